@@ -2,7 +2,7 @@
 
 namespace mural {
 
-wire::PictureHeader pictureHeaderOf(const ReplayOutputs::Frame& frame) {
+wire::PictureHeader pictureHeaderOf(const PlayerOutputs::Frame& frame) {
     wire::PictureHeader h{};
     h.client = frame.client;
     h.window = frame.window;
@@ -19,7 +19,7 @@ wire::PictureHeader pictureHeaderOf(const ReplayOutputs::Frame& frame) {
     return h;
 }
 
-wire::FrameDoneMessage frameDoneMessageOf(const ReplayOutputs::Frame& frame) {
+wire::FrameDoneMessage frameDoneMessageOf(const PlayerOutputs::Frame& frame) {
     wire::FrameDoneMessage done{};
     done.client = frame.client;
     done.window = frame.window;

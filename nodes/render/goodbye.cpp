@@ -7,7 +7,7 @@
 #include "nodes/frame_transfer/picture_sender.hpp"
 #include "nodes/render/barrier_part.hpp"
 #include "nodes/render/exchange_part.hpp"
-#include "nodes/replay/engine/replay.hpp"
+#include "nodes/player/stream_player.hpp"
 
 namespace mural {
 
@@ -23,9 +23,9 @@ double processCpuSeconds() {
 } // namespace
 
 nlohmann::json goodbyeOf(const GoodbyeParts& parts) {
-    const auto& [replay, exchange, sender, barrier, members] = parts;
+    const auto& [player, exchange, sender, barrier, members] = parts;
     nlohmann::json bye;
-    const ReplayCounts counts = replay ? replay->counts() : ReplayCounts{};
+    const PlayerCounts counts = player ? player->counts() : PlayerCounts{};
     bye["commands"] = counts.commands;
     bye["malformed"] = counts.malformed;
     bye["lacking"] = counts.lacking;

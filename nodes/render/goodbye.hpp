@@ -8,11 +8,11 @@ namespace mural {
 class BarrierPart;
 class ExchangePart;
 class PictureSender;
-class Replay;
+class StreamPlayer;
 
 // Parts of the node that have totals; null: the node has no such part.
 struct GoodbyeParts {
-    const Replay* replay = nullptr;
+    const StreamPlayer* player = nullptr;
     const ExchangePart* exchange = nullptr;
     const PictureSender* sender = nullptr;
     const BarrierPart* barrier = nullptr;

@@ -4,7 +4,7 @@
 
 namespace mural {
 
-void LostBitsNotice::report(const ReplayOutputs::Frame& frame) {
+void LostBitsNotice::report(const PlayerOutputs::Frame& frame) {
     const bool losesBits = frame.config.red > 8 && frame.format == PictureFormat::Bgra8;
     if (!losesBits || !reported_.insert({frame.client, frame.window}).second) return;
     log::warning(log::Topic::Picture, "the program's window has ", frame.config.red,

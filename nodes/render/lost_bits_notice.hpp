@@ -5,13 +5,13 @@
 #include <set>
 #include <utility>
 
-#include "nodes/replay/engine/replay_setup.hpp"
+#include "nodes/player/player_setup.hpp"
 
 namespace mural {
 
 class LostBitsNotice {
 public:
-    void report(const ReplayOutputs::Frame& frame);
+    void report(const PlayerOutputs::Frame& frame);
     void windowGone(uint32_t client, uint32_t window) { reported_.erase({client, window}); }
     void clientGone(uint32_t client);
 

@@ -25,12 +25,11 @@
 #include "nodes/render/heartbeat.hpp"
 #include "nodes/render/lost_bits_notice.hpp"
 #include "nodes/render/node_description.hpp"
-#include "nodes/render/replay_config.hpp"
+#include "nodes/render/player_config.hpp"
 #include "nodes/render/replay_spans.hpp"
 #include "nodes/render/windows/tile_windows.hpp"
 #include "nodes/render/work_clock.hpp"
 #include "nodes/frame_transfer/picture_sender.hpp"
-#include "nodes/replay/engine/replay.hpp"
 #include "nodes/session/session_config.hpp"
 #include "nodes/session/stream_build.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -50,7 +49,8 @@ constexpr int kLostPacket = 10; // planted fault: index of the packet that a nod
 
 class Node {
 public:
-    Node(std::unique_ptr<HeadConnection> line, std::string name) : line_(std::move(line)), name_(std::move(name)) {}
+    Node(std::unique_ptr<HeadConnection> line, std::string name, MakePlayer makePlayer)
+        : line_(std::move(line)), name_(std::move(name)), makePlayer_(std::move(makePlayer)) {}
 
     int run() {
         Heartbeat heartbeat(*line_);
@@ -81,14 +81,14 @@ private:
 
     bool takePacket(const wire::PacketHeader& header, std::span<const std::byte> payload) {
         if (header.stream == 0) return headCommand(payload);
-        if (!replay_) return true;
+        if (!player_) return true;
         if (losesPackets_ && catchesUp_ && ++packetsGiven_ == kLostPacket) return true;
-        callsBefore_ = replay_->counts().commands;
+        callsBefore_ = player_->counts().commands;
         clientInHand_ = wire::clientOf(header.stream);
-        if (!replay_->packet(header.stream, payload))
+        if (!player_->packet(header.stream, payload))
             log::warning(log::Topic::Stream, "an invalid packet of a program's stream was dropped");
-        calls_[clientInHand_] += replay_->counts().commands - callsBefore_;
-        callsBefore_ = replay_->counts().commands;
+        calls_[clientInHand_] += player_->counts().commands - callsBefore_;
+        callsBefore_ = player_->counts().commands;
         return !invalid_ && !stuck_;
     }
 
@@ -131,7 +131,7 @@ private:
     void clientGone(uint32_t client) {
         calls_.erase(client);
         frames_.erase(client);
-        if (replay_) replay_->clientGone(client);
+        if (player_) player_->clientGone(client);
         if (windows_) windows_->clientGone(client);
         if (sender_) sender_->clientGone(client);
         lostBits_.clientGone(client);
@@ -179,11 +179,13 @@ private:
             windows_ = std::move(*windows);
         }
         if (setup_.sendPictures) openSender();
-        const ReplayConfig config = replayConfigOf(setup_, renderer);
+        const PlayerConfig config = playerConfigOf(setup_, renderer);
         losesPackets_ = config.plant == "rejoin";
         if (config.plant == "slow" && setup_.node == 1) work_.slowDown(kSlower);
         if (config.plant == "spans" && setup_.node == 0) spans_.delay();
-        replay_ = std::make_unique<Replay>(std::move(*platform), config, createOutputs());
+        auto player = makePlayer_(std::move(*platform), config, createOutputs());
+        if (!player) return fail(player.error().message);
+        player_ = std::move(*player);
         lastCpuNs_ = threadCpuNs();
         spans_.record(setup_.recordsSpans);
         log::debug(log::Topic::Node, setup_.isResyncing ? "restarted, " : "", "draws with ",
@@ -193,13 +195,13 @@ private:
         return true;
     }
 
-    ReplayOutputs createOutputs() {
-        ReplayOutputs outputs;
+    PlayerOutputs createOutputs() {
+        PlayerOutputs outputs;
         outputs.answer = [this](const wire::ReplyPartHeader& h, std::span<const std::byte> bytes) {
             if (!catchesUp_ && !invalid_)
                 sendMessage(wire::NodeMessage::ReplyPart, std::as_bytes(std::span(&h, 1)), bytes);
         };
-        outputs.frameDone = [this](const ReplayOutputs::Frame& f) { frameDone(f); };
+        outputs.frameDone = [this](const PlayerOutputs::Frame& f) { frameDone(f); };
         outputs.invalid = [this] { invalid(); };
         outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
         outputs.driverEvent = [this](const wire::DriverEvent& n, const std::string& text) {
@@ -271,9 +273,9 @@ private:
         const auto words = argument<std::array<uint32_t, 2>>(arguments);
         if (!words) return false;
         const auto [number, drawsAgain] = *words;
-        if (drawsAgain != 0 && replay_) replay_->drawAgain();
+        if (drawsAgain != 0 && player_) player_->drawAgain();
         const wire::SynchronizedMessage done{
-            number, static_cast<uint32_t>(replay_ ? replay_->validity() : wire::FrameValidity::Valid)};
+            number, static_cast<uint32_t>(player_ ? player_->validity() : wire::FrameValidity::Valid)};
         sendMessage(wire::NodeMessage::Synchronized, std::as_bytes(std::span(&done, 1)));
         return true;
     }
@@ -291,9 +293,9 @@ private:
         if (!words) return false;
         const auto [view, node, isFirst, incarnation] = *words;
         const bool itself = node == static_cast<uint32_t>(setup_.node);
-        if (isFirst != 0 && replay_) {
-            replay_->beginTurns();
-            replay_->beginAreas();
+        if (isFirst != 0 && player_) {
+            player_->beginTurns();
+            player_->beginAreas();
         }
         shareWith(static_cast<int>(node), incarnation, arguments.subspan(sizeof *words));
         if (catchesUp_ && !itself) return true;
@@ -309,23 +311,23 @@ private:
     // Composes with `node` from now on, and without the ranks of `absent`. No effect unless it draws a range of the
     // same picture.
     void shareWith(int node, uint32_t incarnation, std::span<const std::byte> absent) {
-        const auto rank = exchange_ && replay_ ? exchange_->rankOf(node) : std::nullopt;
+        const auto rank = exchange_ && player_ ? exchange_->rankOf(node) : std::nullopt;
         if (!rank) return;
         std::set<int> absentRanks;
         for (const uint32_t other : argumentList<uint32_t>(absent))
             if (const auto absentRank = exchange_->rankOf(static_cast<int>(other))) absentRanks.insert(*absentRank);
-        replay_->resetShares(node == setup_.node, [this, rank = *rank, incarnation, absentRanks] {
+        player_->resetShares(node == setup_.node, [this, rank = *rank, incarnation, absentRanks] {
             exchange_->composer().returned(rank, incarnation, absentRanks);
         });
     }
 
     bool sendPhaseState(std::span<const std::byte> number) {
         if (number.size() < sizeof(uint32_t)) return false;
-        if (catchesUp_ || !replay_) return true;
+        if (catchesUp_ || !player_) return true;
         if (!setup_.areas.empty()) {
-            sendMessage(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), replay_->memberAreas());
+            sendMessage(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), player_->memberAreas());
         } else if (setup_.pass.period > 1) {
-            const std::vector<wire::WindowTurn> turns = replay_->turns();
+            const std::vector<wire::WindowTurn> turns = player_->turns();
             sendMessage(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), std::as_bytes(std::span(turns)));
         }
         return true;
@@ -334,20 +336,20 @@ private:
     bool moveAreas(std::span<const std::byte> bytes) {
         auto areas = takeAreas(bytes);
         if (!areas || !bytes.empty()) return false;
-        if (replay_) replay_->moveAreas(std::move(*areas));
+        if (player_) player_->moveAreas(std::move(*areas));
         return true;
     }
 
     bool moveShares(std::span<const std::byte> bytes) {
         const auto shares = sharesOf(bytes);
-        if (shares && replay_) replay_->moveShares(*shares);
+        if (shares && player_) player_->moveShares(*shares);
         return shares.has_value();
     }
 
     bool takeTurns(std::span<const std::byte> bytes) {
-        if (!setup_.areas.empty()) return !replay_ || replay_->takeMemberAreas(bytes);
+        if (!setup_.areas.empty()) return !player_ || player_->takeMemberAreas(bytes);
         if (bytes.size() % sizeof(wire::WindowTurn) != 0) return false;
-        if (replay_) replay_->takeTurns(argumentList<wire::WindowTurn>(bytes));
+        if (player_) player_->takeTurns(argumentList<wire::WindowTurn>(bytes));
         return true;
     }
 
@@ -366,7 +368,7 @@ private:
         return changed || fail("its stream cannot switch to multicast: " + changed.error().message);
     }
 
-    void frameDone(const ReplayOutputs::Frame& f) {
+    void frameDone(const PlayerOutputs::Frame& f) {
         uint32_t& latest = frames_[f.client];
         latest = std::max(latest, f.frame);
         if (!f.valid) invalid();
@@ -386,7 +388,7 @@ private:
         done.replayNs = replayedNs - lastCpuNs_;
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
-        done.calls = calls_[f.client] + (f.client == clientInHand_ ? replay_->counts().commands - callsBefore_ : 0);
+        done.calls = calls_[f.client] + (f.client == clientInHand_ ? player_->counts().commands - callsBefore_ : 0);
         std::vector<wire::FrameSpan> spans = spans_.take();
         if (!picture) return sendDone(done, spans);
         const SpanScope waits(SpanKind::WaitQueue);
@@ -433,7 +435,7 @@ private:
         work_.begin(); // the sender's clock starts now
     }
 
-    void showTiles(const ReplayOutputs::Frame& f) {
+    void showTiles(const PlayerOutputs::Frame& f) {
         const auto shown = windows_->show(f, swaps_ ? swaps_->barrier() : nullptr);
         if (!shown) {
             log::warning(log::Topic::Output, "the wall windows are lost: ", shown.error().message);
@@ -452,7 +454,7 @@ private:
 
     void sendGoodbye() {
         if (sender_ && !sender_->finish()) return; // the sender has logged the reason
-        const GoodbyeParts parts{replay_.get(), exchange_.get(), sender_.get(), swaps_.get(), setup_.swapMembers};
+        const GoodbyeParts parts{player_.get(), exchange_.get(), sender_.get(), swaps_.get(), setup_.swapMembers};
         line_->sendText(wire::NodeMessage::Goodbye, jsonText(goodbyeOf(parts)));
     }
 
@@ -469,7 +471,8 @@ private:
     NodeSetup setup_;
     std::unique_ptr<BarrierPart> swaps_; // null: no swap barrier
     std::unique_ptr<TileWindows> windows_;
-    std::unique_ptr<Replay> replay_;
+    const MakePlayer makePlayer_;
+    std::unique_ptr<StreamPlayer> player_;  // null before the setup
     std::unique_ptr<PictureSender> sender_; // null: the head requests no pictures
     bool stuck_ = false;                    // the sender failed: no message leaves this node
     ReplaySpans spans_;                     // while statistics are on
@@ -490,7 +493,7 @@ private:
 
 } // namespace
 
-int runNode(const NodeOptions& options) {
+int runNode(const NodeOptions& options, const MakePlayer& makePlayer) {
     signal(SIGPIPE, SIG_IGN); // the end of a display is an error of its windows and must not end the node
     const PauseWatch pauseWatch;
     auto line = HeadConnection::open(options);
@@ -498,7 +501,7 @@ int runNode(const NodeOptions& options) {
         log::error(log::Topic::Node, line.error().message);
         return 1;
     }
-    return Node(std::move(*line), options.name).run();
+    return Node(std::move(*line), options.name, makePlayer).run();
 }
 
 } // namespace mural

@@ -1,7 +1,9 @@
-// A render node process: receives the head's stream, replays it on its GL, and replies.
+// A render node process: receives the head's stream, has it drawn by a player, and replies.
 #pragma once
 
 #include <string>
+
+#include "nodes/player/stream_player.hpp"
 
 namespace mural {
 
@@ -12,6 +14,6 @@ struct NodeOptions {
 };
 
 // Runs until the session ends or the head is gone. Returns the exit status of the process.
-int runNode(const NodeOptions& options);
+int runNode(const NodeOptions& options, const MakePlayer& makePlayer);
 
 } // namespace mural

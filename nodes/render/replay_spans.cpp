@@ -33,7 +33,7 @@ wire::FrameSpansHeader spansHeaderOf(const wire::FrameDoneMessage& done) {
     return {done.client, done.window, done.frame, 0, quickNowNs()};
 }
 
-std::unique_ptr<PictureRead> readPicture(const ReplayOutputs::Frame& frame) {
+std::unique_ptr<PictureRead> readPicture(const PlayerOutputs::Frame& frame) {
     const SpanScope reads(SpanKind::Readback);
     return frame.read();
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "nodes/frame_spans/thread_spans.hpp"
-#include "nodes/replay/engine/replay_setup.hpp"
+#include "nodes/player/player_setup.hpp"
 #include "streamcodec/wire/frame_spans.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
@@ -36,7 +36,7 @@ private:
 [[nodiscard]] wire::FrameSpansHeader spansHeaderOf(const wire::FrameDoneMessage& done);
 
 // Reads the picture of a frame as a span of its own.
-std::unique_ptr<PictureRead> readPicture(const ReplayOutputs::Frame& frame);
+std::unique_ptr<PictureRead> readPicture(const PlayerOutputs::Frame& frame);
 
 // Returns the reply to the arguments of HeadCommand::ClockProbe; empty: they are invalid.
 std::optional<wire::ClockReplyMessage> clockReplyTo(std::span<const std::byte> arguments);

@@ -13,8 +13,8 @@ namespace mural::fuzz {
 namespace {
 
 // Returns limits small enough for many runs per second; the code that enforces them is the same.
-ReplayConfig configOf(uint8_t options) {
-    ReplayConfig c;
+PlayerConfig configOf(uint8_t options) {
+    PlayerConfig c;
     if (options & kTiles) {
         c.grid = {2, 2, options & kLean ? 2 : 1};
         c.region = {1, 1, 1, 1};
@@ -29,10 +29,10 @@ void touch(std::span<const std::byte> bytes) {
     for (const std::byte b : bytes) sum = static_cast<uint8_t>(sum + static_cast<uint8_t>(b));
 }
 
-ReplayOutputs outputs() {
-    ReplayOutputs out;
+PlayerOutputs outputs() {
+    PlayerOutputs out;
     out.answer = [](const wire::ReplyPartHeader&, std::span<const std::byte> bytes) { touch(bytes); };
-    out.frameDone = [](const ReplayOutputs::Frame& f) {
+    out.frameDone = [](const PlayerOutputs::Frame& f) {
         // The node reads its region; a small part is sufficient here and saves time.
         const PixelViewport r = intersect(f.region, {f.region.x, f.region.y, 16, 16});
         if (f.pixels) touch({f.pixels(r), static_cast<size_t>(r.area()) * 4});
@@ -43,7 +43,7 @@ ReplayOutputs outputs() {
 
 } // namespace
 
-ReplayCounts replayBytes(std::span<const std::byte> input) {
+PlayerCounts replayBytes(std::span<const std::byte> input) {
     if (input.empty()) return {};
     const auto options = static_cast<uint8_t>(input[0]);
     Replay replay(makeFakePlatform({.colorBuffers = (options & kSingleBuffered) != 0 ? gl::ColorBuffers::OneNamedFront

@@ -12,6 +12,6 @@ namespace mural::fuzz {
 
 enum Option : uint8_t { kLean = 1, kTiles = 2, kSingleBuffered = 4, kSurfacesFail = 8 };
 
-ReplayCounts replayBytes(std::span<const std::byte> input);
+PlayerCounts replayBytes(std::span<const std::byte> input);
 
 } // namespace mural::fuzz

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/geometry/jitter.hpp"
-#include "nodes/replay/features/pixel_mapping.hpp"
+#include "nodes/player/pixel_mapping.hpp"
 #include "tests/numerics/case_table.hpp"
 
 namespace mural {

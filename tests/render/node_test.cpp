@@ -9,6 +9,7 @@
 
 #include "common/log/log.hpp"
 #include "common/log/process_log.hpp"
+#include "nodes/replay/engine/make_replay.hpp"
 #include "nodes/session/session_config.hpp"
 #include "nodes/session/stream_build.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -31,7 +32,7 @@ protected:
         node_ = std::thread([this, fd = offer->peerFd] {
             NodeOptions options;
             options.connectFd = fd;
-            status_ = runNode(options);
+            status_ = runNode(options, makeReplay);
         });
     }
     void TearDown() override {

@@ -31,11 +31,11 @@ class DynamicTiles : public ::testing::Test {
 protected:
     void SetUp() override { replay_ = make(false); }
 
-    std::unique_ptr<Replay> make(bool isResyncing, ReplayConfig config = {}) {
+    std::unique_ptr<Replay> make(bool isResyncing, PlayerConfig config = {}) {
         config.areas = leftAndRight(0, false);
         config.isResyncing = isResyncing;
-        ReplayOutputs out;
-        out.frameDone = [this](const ReplayOutputs::Frame& f) { frame_ = f; };
+        PlayerOutputs out;
+        out.frameDone = [this](const PlayerOutputs::Frame& f) { frame_ = f; };
         out.answer = [this](const wire::ReplyPartHeader& h, std::span<const std::byte>) { answer_ = h; };
         fuzz::FakeGlOptions options;
         options.drew = [this](bool scissored, const std::array<int, 4>& box) {
@@ -75,7 +75,7 @@ protected:
     testing::EncoderHarness encoder_;
     ThreadState& t_ = encoder_.thread();
     std::unique_ptr<Replay> replay_;
-    ReplayOutputs::Frame frame_{};
+    PlayerOutputs::Frame frame_{};
     wire::ReplyPartHeader answer_{};
     std::vector<PixelViewport> drawn_; // or cleared
     uint32_t frames_ = 0;
@@ -305,7 +305,7 @@ class DynamicZooms : public DynamicTiles {
 protected:
     void SetUp() override { replay_ = makeZooming(false); }
     std::unique_ptr<Replay> makeZooming(bool isResyncing) {
-        ReplayConfig config;
+        PlayerConfig config;
         config.anyMovesZoom = config.movesZoom = true;
         return make(isResyncing, config);
     }

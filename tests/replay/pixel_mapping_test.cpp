@@ -1,5 +1,5 @@
 // Positions of samples and kernel pixels of a render pass.
-#include "nodes/replay/features/pixel_mapping.hpp"
+#include "nodes/player/pixel_mapping.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>

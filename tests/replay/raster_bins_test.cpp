@@ -1,5 +1,5 @@
 // Regions that are extended to whole bins of the software rasteriser.
-#include "nodes/replay/context/raster_bins.hpp"
+#include "nodes/player/raster_bins.hpp"
 
 #include <gtest/gtest.h>
 

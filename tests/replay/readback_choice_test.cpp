@@ -1,5 +1,5 @@
 // The choice of the readback method, with simulated times.
-#include "nodes/replay/readback/readback_choice.hpp"
+#include "nodes/player/readback_choice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -24,16 +24,16 @@ namespace {
 class ReplayTest : public ::testing::Test {
 protected:
     void SetUp() override { start({}); }
-    void start(const ReplayLimits& limits, const fuzz::FakeGlOptions& options = {}) {
-        ReplayConfig config;
+    void start(const PlayerLimits& limits, const fuzz::FakeGlOptions& options = {}) {
+        PlayerConfig config;
         config.limits = limits;
-        ReplayOutputs out;
+        PlayerOutputs out;
         out.answer = [this](const wire::ReplyPartHeader& h, std::span<const std::byte> b) {
             ++answers_;
             header_ = h;
             answerBytes_ = b.size();
         };
-        out.frameDone = [this](const ReplayOutputs::Frame& f) {
+        out.frameDone = [this](const PlayerOutputs::Frame& f) {
             frame_ = f;
             pictureBytes_ = f.pixels ? static_cast<int64_t>(f.pixels(f.region) != nullptr) * f.region.area() * 4 : -1;
         };
@@ -72,7 +72,7 @@ protected:
     testing::EncoderHarness encoder_;
     ThreadState& t_ = encoder_.thread();
     std::unique_ptr<Replay> replay_;
-    ReplayOutputs::Frame frame_{};
+    PlayerOutputs::Frame frame_{};
     wire::ReplyPartHeader header_{};
     int64_t pictureBytes_ = 0;
     size_t answerBytes_ = 0;

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "nodes/replay/features/pixel_mapping.hpp"
+#include "nodes/player/pixel_mapping.hpp"
 
 namespace mural {
 namespace {

@@ -28,16 +28,16 @@ protected:
     void start(Eye eye, bool stereo = true) {
         auto platform = gl::openPlatform("egl");
         ASSERT_TRUE(platform) << platform.error().message;
-        ReplayConfig config;
+        PlayerConfig config;
         config.answers = true;
         config.pass.eye = eye;
         config.eyeBase = 2;
         config.focusDistance = 4;
-        ReplayOutputs out;
+        PlayerOutputs out;
         out.answer = [this](const wire::ReplyPartHeader&, std::span<const std::byte> bytes) {
             answered_.assign(bytes.begin(), bytes.end());
         };
-        out.frameDone = [this](const ReplayOutputs::Frame& f) {
+        out.frameDone = [this](const PlayerOutputs::Frame& f) {
             const std::byte* const pixels = f.pixels ? f.pixels(f.region) : nullptr;
             shown_.clear();
             for (int64_t i = 0; pixels && i < f.region.area(); ++i)

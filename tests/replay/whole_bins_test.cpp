@@ -23,12 +23,12 @@ constexpr PixelViewport kBins{64, 62, 128, 128};
 class WholeBins : public ::testing::Test {
 protected:
     void open(bool rastersInBins, const wire::WindowConfig& buffers) {
-        ReplayConfig config;
+        PlayerConfig config;
         config.grid = {3, 2};
         config.region = {1, 1, 1, 1};
         config.rastersInBins = rastersInBins;
-        ReplayOutputs out;
-        out.frameDone = [this](const ReplayOutputs::Frame& f) { shown_ = f.region; };
+        PlayerOutputs out;
+        out.frameDone = [this](const PlayerOutputs::Frame& f) { shown_ = f.region; };
         out.answer = [](const wire::ReplyPartHeader&, std::span<const std::byte>) {};
         fuzz::FakeGlOptions options;
         options.drew = [this](bool scissored, const std::array<int, 4>& box) {

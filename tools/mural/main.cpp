@@ -14,6 +14,7 @@
 #include "nodes/head/head.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/render/node.hpp"
+#include "nodes/replay/engine/make_replay.hpp"
 #include "tools/mural/accuracy/accuracy_command.hpp"
 #include "nodes/trace_player/player.hpp"
 #include "tools/mural/commands.hpp"
@@ -260,7 +261,7 @@ private:
         if (wait_.wait) return mural::cli::waitCommand(wait_);
         if ((node_.connectFd >= 0) == !node_.connect.empty())
             return usageError("mural node", "exactly one of --connect-fd, --connect and --wait is required");
-        return mural::runNode(node_);
+        return mural::runNode(node_, mural::makeReplay);
     }
 
     void addTools() {

@@ -53,7 +53,7 @@ int64_t TileWindows::awaitBarrier(SwapBarrier& barrier, const SwapKey& key) {
     return barrier.await(key);
 }
 
-Result<void> TileWindows::show(const ReplayOutputs::Frame& f, SwapBarrier* barrier) {
+Result<void> TileWindows::show(const PlayerOutputs::Frame& f, SwapBarrier* barrier) {
     const SpanScope presents(SpanKind::Present);
     const bool other = !setup_.pass.shown.none(); // the canvas has its own resolution
     const int width = other ? f.picture.w : static_cast<int>(f.config.width),

@@ -6,7 +6,7 @@
 #include "common/base/main_window.hpp"
 #include "nodes/output/windows/wall_windows.hpp"
 #include "nodes/render/windows/overlay_part.hpp"
-#include "nodes/replay/engine/replay.hpp"
+#include "nodes/player/player_setup.hpp"
 #include "nodes/session/session_config.hpp"
 #include "nodes/swap_barrier/swap_barrier.hpp"
 
@@ -18,7 +18,7 @@ public:
     // The overlay over the pictures. Never null.
     [[nodiscard]] const std::shared_ptr<OverlayPart>& overlay() const { return overlay_; }
     // Shows the tiles of the main window (the largest that swaps). With a barrier, waits for its other members.
-    Result<void> show(const ReplayOutputs::Frame& frame, SwapBarrier* barrier);
+    Result<void> show(const PlayerOutputs::Frame& frame, SwapBarrier* barrier);
 
     void windowGone(uint32_t client, uint32_t window) { mainWindow_.windowGone(client, window); }
     void clientGone(uint32_t client) { mainWindow_.clientGone(client); }

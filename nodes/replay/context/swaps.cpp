@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/base/clock.hpp"
-#include "nodes/replay/features/pixel_mapping.hpp"
+#include "nodes/player/pixel_mapping.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
@@ -82,7 +82,7 @@ void Replay::swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t 
 }
 
 void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front) {
-    ReplayOutputs::Frame f{};
+    PlayerOutputs::Frame f{};
     f.valid = true;
     f.client = wire::clientOf(stream_);
     f.window = id;

@@ -9,7 +9,7 @@
 // Framebuffer objects are always drawn whole. Source: docs/architecture/tiling.md and exactness.md.
 #include <cstdint>
 
-#include "nodes/replay/features/pixel_mapping.hpp"
+#include "nodes/player/pixel_mapping.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/engine/to_int.hpp"
 

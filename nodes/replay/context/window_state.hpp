@@ -9,7 +9,7 @@
 #include "gl_functions.hpp"
 #include "nodes/exchange/part_composition.hpp"
 #include "nodes/gl/gl_platform.hpp"
-#include "nodes/replay/readback/readback_choice.hpp"
+#include "nodes/player/readback_choice.hpp"
 #include "nodes/session/range_assignment.hpp"
 #include "nodes/session/viewport_assignment.hpp"
 #include "streamcodec/wire/control_records.hpp"

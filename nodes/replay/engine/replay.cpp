@@ -11,7 +11,7 @@
 
 namespace mural {
 
-Replay::Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs)
+Replay::Replay(std::unique_ptr<gl::Platform> platform, PlayerConfig config, PlayerOutputs outputs)
     : platform_(std::move(platform)),
       config_(std::move(config)),
       out_(std::move(outputs)),

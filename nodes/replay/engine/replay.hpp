@@ -29,7 +29,7 @@
 #include "nodes/replay/engine/name_table.hpp"
 #include "nodes/replay/programs/program_sources.hpp"
 #include "nodes/replay/engine/replay_dispatch.hpp"
-#include "nodes/replay/engine/replay_setup.hpp"
+#include "nodes/player/stream_player.hpp"
 #include "nodes/replay/features/projection_detection.hpp"
 #include "nodes/replay/programs/tiling.hpp"
 #include "nodes/replay/features/clip_transform.hpp"
@@ -46,42 +46,25 @@ namespace mural {
 
 class AsyncReadback;
 
-class Replay : private BlobQueue {
+class Replay : public StreamPlayer, private BlobQueue {
 public:
-    Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs);
+    Replay(std::unique_ptr<gl::Platform> platform, PlayerConfig config, PlayerOutputs outputs);
     ~Replay() override;
 
-    // Replays the payload of one packet. Returns false if the stream is broken beyond this packet; the log has the
-    // reason.
-    bool packet(uint32_t stream, std::span<const std::byte> payload);
-    void clientGone(uint32_t client);
-    // Ends the skipping of frames: each window is drawn from its next frame on.
-    void drawAgain();
-    // Time-multiplex: returns the state of all windows that determines their turns.
-    [[nodiscard]] std::vector<wire::WindowTurn> turns() const;
-    // Sets the turns that another node reported for this position of the stream.
-    void takeTurns(std::span<const wire::WindowTurn> turns);
-    // Called if no node has the turns. The node of the first turn keeps frames in progress, and all nodes restart their
-    // counts.
-    void beginTurns();
-    // Sort-last: handles the return of a node; `itself`: this node has returned. All nodes of the picture call it at
-    // the same position of the stream. `returned` is called between the last composition without the returned node and
-    // the first one with it.
-    void resetShares(bool itself, std::function<void()> returned);
-    // Announces new shares. Each window adopts them with the first shared draw of its next frame.
-    void moveShares(const RangeAssignment& shares);
-    // Requires ReplayConfig::areas. Applies new areas to each window at its next full clear
-    // (features/dynamic_tiles.cpp).
-    void moveAreas(ViewportAssignment areas);
-    // Returns the payload of a Turns message: the areas that divide this node's windows.
-    [[nodiscard]] std::vector<std::byte> memberAreas() const;
-    // Sets the areas from such a payload of another node. Returns false if malformed.
-    bool takeMemberAreas(std::span<const std::byte> bytes);
-    // Called if no node has the areas. Divides all windows by the latest ones.
-    void beginAreas();
-    // Reports whether the next shown frames depend on skipped draws.
-    [[nodiscard]] wire::FrameValidity validity() const;
-    [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
+    bool packet(uint32_t stream, std::span<const std::byte> payload) override;
+    void clientGone(uint32_t client) override;
+    void drawAgain() override;
+    [[nodiscard]] std::vector<wire::WindowTurn> turns() const override;
+    void takeTurns(std::span<const wire::WindowTurn> turns) override;
+    void beginTurns() override;
+    void resetShares(bool itself, std::function<void()> returned) override;
+    void moveShares(const RangeAssignment& shares) override;
+    void moveAreas(ViewportAssignment areas) override; // at a window's next full clear (features/dynamic_tiles.cpp)
+    [[nodiscard]] std::vector<std::byte> memberAreas() const override;
+    bool takeMemberAreas(std::span<const std::byte> bytes) override;
+    void beginAreas() override;
+    [[nodiscard]] wire::FrameValidity validity() const override;
+    [[nodiscard]] const PlayerCounts& counts() const override { return counts_; }
 
     // ---- interface of the generated code
     GlFunctions gl{};
@@ -201,7 +184,7 @@ private:
     [[nodiscard]] bool hasFences(const ContextState& c) const;
     std::shared_ptr<AsyncReadback> laterReads();
     [[nodiscard]] bool readsLater(const Window& w, const PixelViewport& region, bool front);
-    std::unique_ptr<PictureRead> readAtOnce(const ReplayOutputs::Frame& f, const PixelViewport& r);
+    std::unique_ptr<PictureRead> readAtOnce(const PlayerOutputs::Frame& f, const PixelViewport& r);
     std::unique_ptr<PictureRead> readLater(Window& w, const PixelViewport& r, bool front);
     AsyncReadback* into_ = nullptr; // destination of readRegion(); null: pixels_
     std::shared_ptr<PictureMemory> memory_ = std::make_shared<PictureMemory>();
@@ -463,9 +446,9 @@ private:
     void arrayPointer(uint64_t pointer, const std::function<void(const void*)>& call); // engine/object_commands.cpp
 
     std::unique_ptr<gl::Platform> platform_;
-    ReplayConfig config_;
-    ReplayOutputs out_;
-    ReplayCounts counts_;
+    PlayerConfig config_;
+    PlayerOutputs out_;
+    PlayerCounts counts_;
     std::map<uint32_t, Client> clients_;
     bool loaded_ = false;
     // The current stream and its context.

@@ -8,7 +8,7 @@
 
 #include "gl_opcodes.hpp"
 #include "nodes/frame_transfer/scale_picture.hpp"
-#include "nodes/replay/features/pixel_mapping.hpp"
+#include "nodes/player/pixel_mapping.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/wire/control_records.hpp"
 

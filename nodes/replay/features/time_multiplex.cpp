@@ -13,8 +13,8 @@
 #include <cstring>
 #include <utility>
 
-#include "nodes/replay/features/pixel_mapping.hpp"
-#include "nodes/replay/context/raster_bins.hpp"
+#include "nodes/player/pixel_mapping.hpp"
+#include "nodes/player/raster_bins.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/features/window_use.hpp"
 #include "streamcodec/command_traits.hpp"

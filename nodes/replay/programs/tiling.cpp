@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "nodes/replay/features/pixel_mapping.hpp"
+#include "nodes/player/pixel_mapping.hpp"
 
 namespace mural {
 

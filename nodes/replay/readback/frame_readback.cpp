@@ -42,7 +42,7 @@ bool Replay::readsLater(const Window& w, const PixelViewport& region, bool front
     return buffers && hasFences(*bound_) && isAnswering() && laterReads();
 }
 
-std::unique_ptr<PictureRead> Replay::readAtOnce(const ReplayOutputs::Frame& f, const PixelViewport& r) {
+std::unique_ptr<PictureRead> Replay::readAtOnce(const PlayerOutputs::Frame& f, const PixelViewport& r) {
     const std::byte* const pixels = f.pixels(r);
     if (!pixels) return nullptr;
     const size_t bytes = static_cast<size_t>(r.area()) * 4;

@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "nodes/replay/engine/replay_setup.hpp"
+#include "nodes/player/player_setup.hpp"
 #include "nodes/session/session_config.hpp"
 
 namespace mural {
 
 // `renderer`: name of this node's GL; software renderers draw and read differently.
-[[nodiscard]] ReplayConfig replayConfigOf(const NodeSetup& setup, const std::string& renderer);
+[[nodiscard]] PlayerConfig playerConfigOf(const NodeSetup& setup, const std::string& renderer);
 
 // Places the calling thread near the GPU, and returns the placement for a person. Not with software rendering, because
 // the driver's threads then need all cores.

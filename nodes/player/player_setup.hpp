@@ -1,4 +1,4 @@
-// Configuration and outputs of a Replay: everything that its owner passes in and receives.
+// Configuration and outputs of a StreamPlayer: everything that its owner passes in and receives.
 #pragma once
 
 #include <cstdint>
@@ -15,24 +15,24 @@
 #include "nodes/exchange/part_composition.hpp"
 #include "nodes/exchange/picture_part.hpp"
 #include "nodes/frame_transfer/picture_read.hpp"
-#include "nodes/replay/features/clip_transform.hpp"
 #include "nodes/session/viewport_assignment.hpp"
 #include "nodes/session/readback.hpp"
 #include "nodes/session/render_pass.hpp"
+#include "nodes/session/screen_view.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 
 // Limits on the memory and work that a stream may cause on the node, far above the needs of programs.
-struct ReplayLimits {
+struct PlayerLimits {
     uint64_t blobBytes = uint64_t{4} << 30;   // queued in one stream
     uint64_t answerBytes = uint64_t{2} << 30; // of one answer
     uint32_t listCommands = 1u << 24;         // executed by one call of a display list; nesting multiplies them
 };
 
 // This node's part of every picture.
-struct ReplayConfig {
+struct PlayerConfig {
     int node = 0;
     TileGrid grid;
     TileRegion region;
@@ -54,11 +54,11 @@ struct ReplayConfig {
     Readback readback = Readback::Direct; // of Frame::read
     bool deepPictures = false;            // allows Bgr10A2 in Frame::format
     std::string plant;                    // MURAL_PLANT: a planted fault, which tests must detect
-    ReplayLimits limits;
+    PlayerLimits limits;
 };
 
-// Outputs of the replay; called on the replay thread.
-struct ReplayOutputs {
+// Outputs of the player; called on its thread.
+struct PlayerOutputs {
     // Part of a reply; `last` closes this node's part.
     std::function<void(const wire::ReplyPartHeader&, std::span<const std::byte>)> answer;
     // A frame of the window is complete. `pixels` reads the given rectangle in window coordinates. Rows are bottom
@@ -71,7 +71,7 @@ struct ReplayOutputs {
         PixelViewport picture; // the complete picture: the window's size, or every nth pixel of it
         bool drawnWhole;       // every node drew the whole window (ShareGroup::allDrawn)
         bool keepsPicture;     // each frame builds on its predecessor, so one node draws all of them
-        bool valid;            // does not depend on skipped draws (ReplayConfig::skips)
+        bool valid;            // does not depend on skipped draws (PlayerConfig::skips)
         bool notSplit;         // several ranges exist, but no draws were shared
         uint32_t areas;        // number of the ViewportAssignment that divides the picture
         uint32_t
@@ -94,7 +94,7 @@ struct ReplayOutputs {
     std::function<void(const wire::DriverEvent&, const std::string& text)> driverEvent;
 };
 
-struct ReplayCounts {
+struct PlayerCounts {
     uint64_t commands = 0, malformed = 0, lacking = 0, glErrors = 0, frames = 0, bytes = 0;
 };
 

@@ -1,4 +1,4 @@
-#include "nodes/replay/features/pixel_mapping.hpp"
+#include "nodes/player/pixel_mapping.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "nodes/render/replay_config.hpp"
+#include "nodes/render/player_config.hpp"
 
 #include <cstdlib>
 #include <vector>
 
 #include "nodes/affinity/placement.hpp"
 #include "nodes/gl/software_renderer.hpp"
-#include "nodes/replay/readback/readback_choice.hpp"
+#include "nodes/player/readback_choice.hpp"
 
 namespace mural {
 
@@ -20,8 +20,8 @@ std::vector<Viewport> areasOf(const std::vector<double>& numbers) {
 
 } // namespace
 
-ReplayConfig replayConfigOf(const NodeSetup& setup, const std::string& renderer) {
-    ReplayConfig config;
+PlayerConfig playerConfigOf(const NodeSetup& setup, const std::string& renderer) {
+    PlayerConfig config;
     config.node = setup.node;
     config.skips = setup.isResyncing && setup.skipsFrames;
     config.isResyncing = setup.isResyncing;
