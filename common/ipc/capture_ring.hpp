@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 11;
+constexpr uint32_t kVersion = 12;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -224,12 +224,17 @@ inline std::byte* chunk(CaptureHeader* h, uint32_t index) {
 //
 // After that the app's mapping indicates that it is alive. The head has locked the memfd's file description (flock),
 // and the kernel releases the lock with its last mapping and descriptor.
+enum class ProgramKind : uint32_t {
+    Captured = 0, // its stream contains GL commands
+    Native = 1,   // its stream contains objects and frames of the native API
+};
+
 struct Hello {
     uint32_t magic;
     uint32_t version;
     uint64_t registryDigest; // of the command table: both ends must come from one build
     int32_t pid;
-    uint32_t reserved;
+    ProgramKind kind;
 };
 
 enum LocalRendering : uint32_t { kLocalRenderingOff = 0, kLocalRenderingOn = 1 };
@@ -245,7 +250,7 @@ struct Welcome {
     uint32_t nodeGlVersion; // lowest GL version of the nodes, 10 * major + minor; 0 unknown
     uint32_t refused;       // not 0: the head rejects the program; a text of extensionBytes follows instead
     uint32_t extensionBytes;
-    uint32_t reserved;
+    uint32_t width, height; // of the wall in pixels; 0: the program's window determines it
 };
 
 } // namespace mural::capture

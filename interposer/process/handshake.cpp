@@ -145,7 +145,8 @@ capture::CaptureHeader* mapMemory(int memory) {
 bool shakeHands(int socket, Handshake& result) {
     const OwnedFd closing(socket);
     const Transfer transfer(socket);
-    const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(), 0};
+    const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(),
+                               capture::ProgramKind::Captured};
     OwnedFd memory;
     capture::Welcome& welcome = result.welcome;
     if (!transfer.send(&hello, sizeof hello) || !transfer.receive(&welcome, sizeof welcome, &memory)) {

@@ -52,7 +52,8 @@ Result<SessionConfig> receiveConfig(ControlChannel& control) {
 
 LaunchOptions launchOptionsOf(const SessionConfig& config) {
     LaunchOptions options;
-    options.executable = launch::ownBinary();
+    options.isNative = !config.nodeProgram.empty();
+    options.executable = options.isNative ? config.nodeProgram : launch::ownBinary();
     options.remoteMural = config.remoteMural.empty() ? options.executable : config.remoteMural;
     options.launchCommand = config.launchCommand;
     options.minNodes = config.minNodes;

@@ -90,6 +90,11 @@ struct PlayerOutputs {
     // Sort-last (features/sort_last.cpp): composites the parts of all nodes of the picture. Afterwards the collector's
     // part is the whole picture. Returns the area of it that may have changed.
     std::function<PixelViewport(PicturePart&, const CompositeRule&)> composeParts;
+    // Reads the next packet of the stream while the player plays an earlier one, and passes it to
+    // StreamPlayer::preview. Blocks until there is one. Returns false if none will come.
+    std::function<bool()> readAhead;
+    // A message about distributed objects to the program (native API).
+    std::function<void(uint32_t client, std::span<const std::byte>)> objectRequest;
     // Driver events of a program's context.
     std::function<void(const wire::DriverEvent&, const std::string& text)> driverEvent;
 };

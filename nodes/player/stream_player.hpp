@@ -26,6 +26,9 @@ public:
     // Plays the payload of one packet. Returns false if the stream is broken beyond this packet; the log has the
     // reason.
     virtual bool packet(uint32_t stream, std::span<const std::byte> payload) = 0;
+    // Called for a packet that arrives while the player waits in PlayerOutputs::readAhead. packet() follows later, in
+    // order. Must not draw.
+    virtual void preview(uint32_t /*stream*/, std::span<const std::byte> /*payload*/) {}
     virtual void clientGone(uint32_t client) = 0;
     // Ends the skipping of frames: each window is drawn from its next frame on.
     virtual void drawAgain() = 0;

@@ -4,9 +4,12 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
+#include <deque>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "common/json/json_text.hpp"
@@ -56,16 +59,43 @@ public:
         Heartbeat heartbeat(*line_);
         while (!finished_ && !line_->broken()) {
             std::span<const std::byte> payload;
-            const auto header = line_->next(payload);
+            std::optional<AheadPacket> ahead;
+            if (!ahead_.empty()) {
+                ahead = std::move(ahead_.front());
+                ahead_.pop_front();
+            }
+            const auto header = ahead ? Result<wire::PacketHeader>(ahead->header) : line_->next(payload);
             if (!header) return finished_ ? 0 : 1; // the connection to the head is lost
             heartbeat.begins();
-            if (!take(header.value(), payload)) return 1;
+            if (!take(header.value(), ahead ? std::span<const std::byte>(ahead->payload) : payload)) return 1;
             heartbeat.ended();
         }
         return line_->broken() ? 1 : 0;
     }
 
 private:
+    // A packet that was read while the player played an earlier one.
+    struct AheadPacket {
+        wire::PacketHeader header;
+        std::vector<std::byte> payload;
+    };
+
+    // Reads one packet for PlayerOutputs::readAhead. Returns false if the player's program or the session has ended.
+    bool readAhead() {
+        std::span<const std::byte> payload;
+        auto header = line_->next(payload);
+        if (!header) return false;
+        ahead_.push_back({header.value(), {payload.begin(), payload.end()}});
+        if (header->stream != 0) {
+            player_->preview(header->stream, payload);
+            return true;
+        }
+        const auto command = argument<uint32_t>(payload);
+        return command && *command != static_cast<uint32_t>(wire::HeadCommand::ClientGone) &&
+               *command != static_cast<uint32_t>(wire::HeadCommand::Finish) &&
+               *command != static_cast<uint32_t>(wire::HeadCommand::Leave);
+    }
+
     bool take(const wire::PacketHeader& header, std::span<const std::byte> payload) {
         work_.begin();
         const bool goesOn = takePacket(header, payload);
@@ -208,6 +238,10 @@ private:
             if (!catchesUp_)
                 sendMessage(wire::NodeMessage::DriverEvent, std::as_bytes(std::span(&n, 1)),
                             std::as_bytes(std::span(text)));
+        };
+        outputs.readAhead = [this] { return readAhead(); };
+        outputs.objectRequest = [this](uint32_t client, std::span<const std::byte> message) {
+            sendMessage(wire::NodeMessage::ObjectRequest, std::as_bytes(std::span(&client, 1)), message);
         };
         if (exchange_)
             outputs.composeParts = [this](PicturePart& part, const CompositeRule& rule) {
@@ -488,6 +522,7 @@ private:
     uint32_t clientInHand_ = 0; // client of the current or latest packet
     uint64_t callsBefore_ = 0;  // commands of all clients before that packet
     bool finished_ = false;
+    std::deque<AheadPacket> ahead_;          // to be taken before further packets of line_
     std::unique_ptr<ExchangePart> exchange_; // null: this node draws all ranges of its picture
 };
 

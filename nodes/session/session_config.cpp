@@ -77,6 +77,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("restartNodes", c.restartNodes);
     visit("minNodes", c.minNodes);
     visit("remoteMural", c.remoteMural);
+    visit("nodeProgram", c.nodeProgram);
     visit("configFile", c.configFile);
     visit("allLocal", c.allLocal);
     visit("canvas", c.canvas);

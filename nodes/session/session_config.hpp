@@ -47,12 +47,14 @@ struct SessionConfig {
     DeltaMode delta = DeltaMode::Auto;                  // --delta: delta coding
     int64_t cacheBytes = int64_t{1} << 30;              // --cache-size: dictionary size, in each node and in the head
     int restartNodes = 3;                               // --restart-nodes: consecutive restarts of a lost node
-    int minNodes = 0;                 // --min-nodes: number of nodes for the start, others may join later; 0: all
-    std::string remoteMural;          // --remote-mural: path of mural on the hosts; empty: the local path
-    std::string configFile;           // --config; empty: the other options describe the wall
-    bool allLocal = false;            // --all-local: all nodes of the file run on this machine
-    std::string canvas;               // --canvas
-    std::vector<std::string> layouts; // --layout: layouts of the file's canvases
+    int minNodes = 0;        // --min-nodes: number of nodes for the start, others may join later; 0: all
+    std::string remoteMural; // --remote-mural: path of mural on the hosts; empty: the local path
+    // --node-program: the program with the native API that the nodes run; empty: the nodes replay captured programs
+    std::string nodeProgram;
+    std::string configFile;                               // --config; empty: the other options describe the wall
+    bool allLocal = false;                                // --all-local: all nodes of the file run on this machine
+    std::string canvas;                                   // --canvas
+    std::vector<std::string> layouts;                     // --layout: layouts of the file's canvases
     ProjectionChoice projection = ProjectionChoice::Auto; // --projection
     double modelUnit = 1;                                 // --model-unit: program units per metre of the file
     PassCounts passes;                                    // --stereo, --pixel, --subpixel, --dplex, --db, --zoom

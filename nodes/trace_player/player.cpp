@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/ipc/futex.hpp"
-#include "nodes/trace_player/capture_link.hpp"
+#include "nodes/capture_link/capture_link.hpp"
 #include "nodes/trace_player/player_windows.hpp"
 #include "streamcodec/trace/trace_reader.hpp"
 #include "streamcodec/wire/record_walk.hpp"
@@ -110,7 +110,8 @@ private:
     Result<CaptureLink*> linkOf(uint32_t client) {
         auto& link = links_[client];
         if (link) return link.get();
-        auto connected = CaptureLink::connect(options_.session, Deadline::inMs(kWelcomePatienceMs));
+        auto connected =
+            CaptureLink::connect(options_.session, capture::ProgramKind::Captured, Deadline::inMs(kWelcomePatienceMs));
         if (!connected) {
             links_.erase(client);
             return connected.error();

@@ -36,6 +36,8 @@ public:
     [[nodiscard]] size_t objectCount() const { return objects_.size(); }
     // Returns the size of the states without blobs.
     [[nodiscard]] uint64_t sizeBytes() const { return sizeBytes_; }
+    // Returns the size of the blobs.
+    [[nodiscard]] uint64_t blobBytes() { return blobs_.store().sizeBytes(); }
 
 private:
     struct Object {

@@ -115,6 +115,13 @@ Result<ObjectReader::AnySnapshot> ObjectReader::Core::wait(Find&& find, const ar
                                                    : lookup.object + version,
                              ": it has not arrived within the deadline");
         mirror.want(ref, monotonicNowNs());
+        if (receive) {
+            lock.unlock();
+            const bool mayArrive = receive();
+            lock.lock();
+            if (!mayArrive) return readError(lookup.object + version, ": no more messages arrive");
+            continue;
+        }
         arrival.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kReaderWaitSliceNs)));
     }
 }
@@ -187,6 +194,8 @@ Result<void> ReaderEnd::input(std::span<const std::byte> message, int64_t nowNs)
     core_->arrival.notify_all();
     return result;
 }
+
+void ReaderEnd::waitBy(std::function<bool()> receive) { core_->receive = std::move(receive); }
 
 void ReaderEnd::tick(int64_t nowNs) {
     const std::lock_guard lock(core_->mutex);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <map>
 #include <mutex>
 
@@ -45,6 +46,9 @@ struct ObjectReader::Core {
     // Drops the snapshots of ended objects. Requires the lock.
     void forgetEnded();
 
+    // Receives further messages while a caller waits, if the waiting thread is the one that receives. Empty: another
+    // thread receives. Returns false if no message will come.
+    std::function<bool()> receive;
     std::mutex mutex;
     std::condition_variable arrival;
     objects::ObjectMirror mirror;
@@ -73,6 +77,9 @@ public:
     void frame(uint64_t number);
     void frameDone(uint64_t number);
 
+    // Sets the function that waiting calls receive by. Call before the first of them; all calls then belong to the
+    // thread that feeds this end.
+    void waitBy(std::function<bool()> receive);
     // Makes waiting calls return an error. Snapshots stay valid.
     void close();
 

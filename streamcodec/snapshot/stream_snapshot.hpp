@@ -1,5 +1,4 @@
-// Produces snapshots for restarted nodes: the stream of all programs so far, without commands that have no remaining
-// effect. Receives every packet in broadcast order. Not thread-safe.
+// Keeps the streams of captured programs, without commands that have no remaining effect. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -8,23 +7,20 @@
 #include <vector>
 
 #include "streamcodec/snapshot/live_command_log.hpp"
-#include "streamcodec/snapshot/snapshot_packet.hpp"
+#include "streamcodec/snapshot/kept_stream.hpp"
 
 namespace mural::snapshot {
 
-class StreamSnapshot {
+class StreamSnapshot final : public KeptStream {
 public:
     // boundBytes: memory limit. Recording of the live state stops when it exceeds the limit.
     explicit StreamSnapshot(size_t boundBytes) : boundBytes_(boundBytes) {}
 
-    void append(uint32_t stream, std::span<const std::byte> payload); // ignores the head's own stream
-    void clientGone(uint32_t client);                                 // removes everything of the program
-
-    [[nodiscard]] bool serves() const { return !overrun_; } // false: nodes can no longer resynchronize
-    // Returns packets that bring a fresh node to the current state. Swaps in them are unseen (frame 0), and they
-    // contain no requests.
-    [[nodiscard]] std::vector<SnapshotPacket> snapshot();
-    [[nodiscard]] size_t sizeBytes() const { return log_.sizeBytes(); }
+    void append(uint32_t stream, std::span<const std::byte> payload) override;
+    void clientGone(uint32_t client) override;
+    [[nodiscard]] bool serves() const override { return !overrun_; }
+    [[nodiscard]] std::vector<SnapshotPacket> snapshot() override;
+    [[nodiscard]] size_t sizeBytes() const override { return log_.sizeBytes(); }
     [[nodiscard]] size_t records() const { return log_.records(); }
 
 private:

@@ -38,6 +38,9 @@ enum Op : uint16_t {
     kOpProgramRecipe =
         25, // u32 program, a reply to kOpRequestProgram: for glProgramBinary; empty: the binary was refused
     kOpErrorReported = 26, // glGetError has returned an error of the program's own GL
+    // Programs with the native API. Their streams contain these, kOpWindow and kOpSwap only.
+    kOpObject = 27, // a message about distributed objects, or a piece of it (object_records.hpp)
+    kOpFrame = 28,  // NativeFrame: precedes the swap of its frame
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;
@@ -74,6 +77,15 @@ constexpr uint8_t kOwnFront = 2;
 
 // In the flags of kOpCreateContext: the program requests notification of a context loss.
 constexpr uint32_t kLosesOnReset = 0x80000000;
+
+// A frame of a program with the native API: what mural::Frame contains, and the observer.
+struct NativeFrame {
+    uint64_t number;
+    double seconds;
+    uint64_t seed;
+    double head[12]; // pose of the head in the room: three rows of a matrix
+};
+static_assert(sizeof(NativeFrame) == 120);
 
 enum class Api : uint32_t { Desktop = 0, Es1 = 1, Es2 = 2 }; // Es2: ES 2 and later
 

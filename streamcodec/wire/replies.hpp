@@ -19,6 +19,8 @@ enum class ReplyKind : uint32_t {
     Rectangle = 1, // disjoint parts of a picture, each from the node that drew it
     Bytes = 2,     // equal on all nodes: the bytes of the first living node count
     Sum = 3,       // u64 values, added over nodes
+    // A message of a node about distributed objects, unasked: requestId is the node. For programs with the native API.
+    Object = 4,
 };
 
 // Header of each reply in the client's reply ring (head → program). The bytes follow immediately, and the next header

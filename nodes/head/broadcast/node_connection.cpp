@@ -20,6 +20,7 @@ constexpr int64_t kMessageLimitMs = 60'000;  // from a message's header to its l
 constexpr int64_t kStatusPatienceMs = 300;   // a broken connection is detected before the process has ended
 constexpr size_t kMaxQueuedBytes = size_t{256} << 20; // limit during resync
 constexpr uint32_t kMaxTextBytes = 1u << 20;
+constexpr uint32_t kMaxObjectRequestBytes = 1u << 20;
 constexpr uint32_t kMaxDataBytes = (1u << 30) + 4096; // a picture of 16384 x 16384 pixels
 
 std::span<std::byte> bytesOf(auto& value) { return std::as_writable_bytes(std::span(&value, 1)); }
@@ -183,6 +184,7 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         return handle([&] { return events_.nodeWindowGone(location_.node, message); });
     }
     case NodeMessage::DriverEvent: return readDriverEvent(header.sizeBytes);
+    case NodeMessage::ObjectRequest: return readObjectRequest(header.sizeBytes);
     case NodeMessage::Alive:
         if (header.sizeBytes != 0) break;
         return {};
@@ -277,6 +279,16 @@ Result<void> NodeConnection::readDriverEvent(uint32_t sizeBytes) {
     if (!bytes) return bytes.error();
     const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     return handle([&] { return events_.nodeDriverEvent(location_.node, event, text); });
+}
+
+Result<void> NodeConnection::readObjectRequest(uint32_t sizeBytes) {
+    uint32_t client = 0;
+    if (sizeBytes <= sizeof client || sizeBytes > kMaxObjectRequestBytes)
+        return Error{"it sent a request for objects of invalid size"};
+    if (auto got = readStruct(client); !got) return got;
+    auto message = readBytes(sizeBytes - sizeof client);
+    if (!message) return message.error();
+    return handle([&] { return events_.nodeObjectRequest(location_.node, client, std::move(*message)); });
 }
 
 Result<void> NodeConnection::readAnswer(uint32_t sizeBytes) {

@@ -34,6 +34,8 @@ public:
     virtual Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) = 0;
     virtual Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) = 0;
     virtual Result<void> nodeDriverEvent(int node, const wire::DriverEvent& event, const std::string& text) = 0;
+    // A message about distributed objects to a program with the native API.
+    virtual Result<void> nodeObjectRequest(int node, uint32_t client, ByteBuffer message) = 0;
     virtual Result<void> nodeLog(int node, const std::string& text) = 0;
     virtual Result<void> nodeGoodbye(int node, const std::string& json) = 0;
     virtual Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) = 0;
@@ -147,6 +149,7 @@ private:
     Result<ByteBuffer> readBytes(size_t sizeBytes);
     template <class Header> Result<void> readStruct(Header& header);
     Result<void> readDriverEvent(uint32_t sizeBytes);
+    Result<void> readObjectRequest(uint32_t sizeBytes);
     Result<void> readAnswer(uint32_t sizeBytes);
     Result<void> readPicture(uint32_t sizeBytes);
     Result<void> readPackedPicture(uint32_t sizeBytes);

@@ -205,7 +205,7 @@ Result<Admission> CaptureServer::judge(int socket, const Hello& hello) {
     if (hello.magic != capture::kMagic || hello.version != capture::kVersion || hello.registryDigest != digest_) {
         return Error{"the capture library and `mural head` are of different builds; install both from one build"};
     }
-    return host_.admitProgram(peer.pid);
+    return host_.admitProgram(peer.pid, hello.kind);
 }
 
 } // namespace mural

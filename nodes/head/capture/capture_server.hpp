@@ -27,7 +27,7 @@ class ProgramHost {
 public:
     virtual ~ProgramHost() = default;
     // Returns the admission. An error refuses the program; its text is shown to the program's user.
-    virtual Result<Admission> admitProgram(pid_t pid) = 0;
+    virtual Result<Admission> admitProgram(pid_t pid, capture::ProgramKind kind) = 0;
     // Called after the Welcome was sent. An invalid socket means that it was not sent, and the admission is void.
     virtual void programWelcomed(uint32_t client, FileDescriptor socket) = 0;
 };

@@ -22,7 +22,13 @@ ProgramTable::ProgramTable(ProgramTerms terms, StreamBroadcaster& nodes, Events 
 
 ProgramTable::~ProgramTable() { endAll(); }
 
-Result<Admission> ProgramTable::admitProgram(pid_t pid) {
+Result<Admission> ProgramTable::admitProgram(pid_t pid, capture::ProgramKind kind) {
+    if (kind != terms_.kind)
+        return Error{kind == capture::ProgramKind::Native
+                         ? "this program uses the native API, but the render nodes draw captured programs; start it "
+                           "with mural run --node-program PROGRAM"
+                         : "the render nodes of this session draw a program with the native API only; start this "
+                           "program in a session of its own"};
     auto memory = CaptureMemory::create(terms_.chunkCount);
     const std::lock_guard lock(mutex_);
     if (!refusal_.empty()) return Error{refusal_};

@@ -22,7 +22,8 @@ namespace mural {
 struct ProgramTerms {
     capture::Welcome welcome{}; // equal for all programs except the id
     std::string extensions;
-    uint32_t latency = 1; // of the start; setLatency() changes it
+    capture::ProgramKind kind = capture::ProgramKind::Captured; // of the programs that the nodes can draw
+    uint32_t latency = 1;                                       // of the start; setLatency() changes it
     uint32_t chunkCount = capture::kDefaultChunks;
     FrameStatistics* statistics = nullptr; // null: none
     SentFrames* sentFrames = nullptr;      // null: none
@@ -40,7 +41,7 @@ public:
     ProgramTable(ProgramTerms terms, StreamBroadcaster& nodes, Events events);
     ~ProgramTable() override;
 
-    Result<Admission> admitProgram(pid_t pid) override;
+    Result<Admission> admitProgram(pid_t pid, capture::ProgramKind kind) override;
     void programWelcomed(uint32_t client, FileDescriptor socket) override;
     void programEnded(uint32_t client, const std::string& problem) override;
 

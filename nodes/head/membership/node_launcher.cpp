@@ -45,15 +45,19 @@ std::vector<std::string> words(const std::string& text) {
     return all;
 }
 
+// The argument that makes the executable a render node.
+std::string nodeWord(const LaunchOptions& options) { return options.isNative ? "--mural-node" : "node"; }
+
 NodeCommand tcpCommand(const NodePlan& plan, const LaunchOptions& options, uint16_t port) {
     NodeCommand command;
     const std::string name = NodeAcceptor::nameOf(plan.node);
     if (plan.reach == NodeReach::Tcp) {
-        command.arguments = {options.executable, "node", "--as", name, "--connect", endpointText("127.0.0.1", port)};
+        command.arguments = {
+            options.executable, nodeWord(options), "--as", name, "--connect", endpointText("127.0.0.1", port)};
         return command;
     }
     command.arguments = words(options.launchCommand);
-    for (const std::string& word : {plan.where, quoted(options.remoteMural), std::string("node"), std::string("--as"),
+    for (const std::string& word : {plan.where, quoted(options.remoteMural), nodeWord(options), std::string("--as"),
                                     name, std::string("--connect"), endpointTowards(plan.where, port)})
         command.arguments.push_back(word);
     return command;
@@ -64,7 +68,7 @@ Result<void> startLocal(LaunchedNode& node, const LaunchOptions& options) {
     if (!offer) return offer.error();
     const FileDescriptor peerFd(offer->peerFd);
     NodeCommand command;
-    command.arguments = {options.executable, "node", "--connect-fd", std::to_string(peerFd.get())};
+    command.arguments = {options.executable, nodeWord(options), "--connect-fd", std::to_string(peerFd.get())};
     command.inheritFd = peerFd.get();
     auto process = NodeProcess::start(command);
     if (!process) return process.error();

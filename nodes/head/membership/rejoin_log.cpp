@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
-#include "streamcodec/snapshot/stream_snapshot.hpp"
 #include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
@@ -14,14 +14,13 @@ namespace {
 
 constexpr int64_t kSliceMs = 100;
 
-std::unique_ptr<snapshot::StreamSnapshot> emptyStream(uint64_t maxBytes) {
-    return std::make_unique<snapshot::StreamSnapshot>(static_cast<size_t>(maxBytes));
-}
-
 } // namespace
 
-RejoinLog::RejoinLog(uint64_t maxBytes)
-    : maxBytes_(maxBytes), snapshot_(emptyStream(maxBytes)), thread_([this] { work(); }) {}
+RejoinLog::RejoinLog(uint64_t maxBytes, MakeStream makeStream)
+    : maxBytes_(maxBytes),
+      makeStream_(std::move(makeStream)),
+      snapshot_(makeStream_(static_cast<size_t>(maxBytes))),
+      thread_([this] { work(); }) {}
 
 RejoinLog::~RejoinLog() {
     {
@@ -84,7 +83,8 @@ void RejoinLog::work() {
         ++taken_;
         if (entry.clientGone != 0) tooLarge_.erase(entry.clientGone);
         if (!fits && complete_) overflow();
-        if (!complete_ && (!fits || logBytes_ > 0)) snapshot_ = emptyStream(maxBytes_), frames_.clear(), logBytes_ = 0;
+        if (!complete_ && (!fits || logBytes_ > 0))
+            snapshot_ = makeStream_(static_cast<size_t>(maxBytes_)), frames_.clear(), logBytes_ = 0;
         if (!complete_ && tooLarge_.empty()) complete_ = true;
         changed_.notify_all();
     }

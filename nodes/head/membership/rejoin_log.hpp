@@ -16,20 +16,18 @@
 
 #include "common/base/clock.hpp"
 #include "common/base/result.hpp"
-#include "streamcodec/snapshot/snapshot_packet.hpp"
+#include "streamcodec/snapshot/kept_stream.hpp"
 #include "streamcodec/trace/wall_frames.hpp"
 #include "streamcodec/wire/node_messages.hpp"
-
-namespace mural::snapshot {
-class StreamSnapshot;
-} // namespace mural::snapshot
 
 namespace mural {
 
 class RejoinLog {
 public:
+    // Makes an empty log with this limit of bytes.
+    using MakeStream = std::function<std::unique_ptr<snapshot::KeptStream>(size_t maxBytes)>;
     // maxBytes: memory for the reduced log, and as much again for entries that the thread has not processed.
-    explicit RejoinLog(uint64_t maxBytes);
+    RejoinLog(uint64_t maxBytes, MakeStream makeStream);
     RejoinLog(const RejoinLog&) = delete;
     RejoinLog& operator=(const RejoinLog&) = delete;
     ~RejoinLog();
@@ -64,6 +62,7 @@ private:
     void overflow(); // with the lock held: discards the log of all current programs
 
     const uint64_t maxBytes_;
+    const MakeStream makeStream_;
     uint64_t appended_ = 0; // accessed by appending threads only
 
     mutable std::mutex mutex_; // guards all members except the thread's own
@@ -79,11 +78,10 @@ private:
     bool inHand_ = false; // the thread is processing an entry
     bool stop_ = false;
 
-    std::unique_ptr<snapshot::StreamSnapshot>
-        snapshot_;                        // owned by the thread; by snapshot() while the thread is paused
-    std::map<uint32_t, uint32_t> frames_; // the same; last frame by program
-    trace::WallFrames wall_;              // the same; includes programs whose log was discarded
-    std::mutex snapshots_;                // serialises snapshot()
+    std::unique_ptr<snapshot::KeptStream> snapshot_; // owned by the thread; by snapshot() while the thread is paused
+    std::map<uint32_t, uint32_t> frames_;            // the same; last frame by program
+    trace::WallFrames wall_;                         // the same; includes programs whose log was discarded
+    std::mutex snapshots_;                           // serialises snapshot()
     std::thread thread_;
 };
 

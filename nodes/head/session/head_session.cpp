@@ -9,6 +9,7 @@
 #include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/frames/picture_place.hpp"
+#include "nodes/head/membership/kept_streams.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/replies.hpp"
@@ -93,7 +94,8 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     terms.tries = spares_.empty() ? config_.restartNodes : std::min(config_.restartNodes, 1);
     terms.readyPatienceMs = options_.readyPatienceMs;
     if (terms.tries > 0 && options_.startNode)
-        nodes_.setRejoinLog(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes)));
+        nodes_.setRejoinLog(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes),
+                                                        isNative() ? makeNativeStream : makeCapturedStream));
     returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
     // other displays need no pictures in any plan
     if (plans_.current().takesPictures || config_.display == Display::Windows)
@@ -277,6 +279,16 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
 
 Result<void> HeadSession::nodeDriverEvent(int node, const wire::DriverEvent& event, const std::string& text) {
     if (serving_ && driverEvents_.isNew(node, event, text)) programs_->driverEvent(event, text);
+    return {};
+}
+
+Result<void> HeadSession::nodeObjectRequest(int node, uint32_t client, ByteBuffer message) {
+    Reply reply;
+    reply.header.requestId = static_cast<uint32_t>(node);
+    reply.header.kind = static_cast<uint32_t>(wire::ReplyKind::Object);
+    reply.header.sizeBytes = message.size();
+    reply.bytes = std::move(message);
+    if (serving_) programs_->reply(client, std::move(reply));
     return {};
 }
 

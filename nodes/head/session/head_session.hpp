@@ -111,6 +111,7 @@ private:
     Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) override;
     Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) override;
     Result<void> nodeDriverEvent(int node, const wire::DriverEvent& event, const std::string& text) override;
+    Result<void> nodeObjectRequest(int node, uint32_t client, ByteBuffer message) override;
     Result<void> nodeLog(int node, const std::string& text) override;
     Result<void> nodeGoodbye(int node, const std::string& json) override;
     Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) override;
@@ -204,6 +205,9 @@ private:
     Result<void> awaitReady();
     Result<void> checkSize();
     void openTables();
+    [[nodiscard]] compound::PixelSize sizeOfWall() const;
+    // Whether the nodes run a program with the native API.
+    [[nodiscard]] bool isNative() const { return !config_.nodeProgram.empty(); }
     trace::About aboutTrace();
     void announceReady();
     std::string placeOwnThreads() const;

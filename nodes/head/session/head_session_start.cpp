@@ -124,6 +124,7 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
         setup.stream = nodes_.multicast()->invitation();
         setup.streamSecret = toHex(nodes_.multicast()->secret());
     }
+    if (isNative() && setup.glBackend == "auto") setup.glBackend = "egl"; // linked GL libraries have no OSMesa contexts
     setup.delta = nodes_.link(plan.node).inBatches();
     setup.cacheBytes = config_.cacheBytes;
     setup.log = log::environmentLevels();
@@ -230,6 +231,13 @@ Result<void> HeadSession::checkSize() {
     return {};
 }
 
+// The size that a program with the native API draws. 0 x 0: unknown.
+compound::PixelSize HeadSession::sizeOfWall() const {
+    if (config_.width > 0) return {config_.width, config_.height};
+    const auto& balance = currentPlan().balance;
+    return balance ? balance->wall : compound::PixelSize{0, 0};
+}
+
 void HeadSession::openTables() {
     ProgramTerms terms;
     capture::Welcome& welcome = terms.welcome;
@@ -242,6 +250,10 @@ void HeadSession::openTables() {
     welcome.nodeCount = static_cast<uint32_t>(mayGrow ? std::max(nodeCount(), 2) : nodeCount());
     fetchesCopies_ = welcome.nodeCount > 1;
     welcome.displayApp = config_.display == Display::App ? 1 : 0;
+    const compound::PixelSize wall = sizeOfWall();
+    welcome.width = static_cast<uint32_t>(wall.w);
+    welcome.height = static_cast<uint32_t>(wall.h);
+    if (isNative()) terms.kind = capture::ProgramKind::Native;
     {
         const std::lock_guard lock(mutex_);
         std::vector<NodeCapabilities> facts;

@@ -36,14 +36,15 @@ constexpr int64_t kTestPatienceMs = 20'000;
 class FakeProgram {
 public:
     // Connects to the head. Returns false if the socket is not available or the head's reply is invalid.
-    bool connect(const std::string& session, uint64_t digest = kTestDigest) {
+    bool connect(const std::string& session, uint64_t digest = kTestDigest,
+                 capture::ProgramKind kind = capture::ProgramKind::Captured) {
         socket_ = FileDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
         sockaddr_un address{};
         address.sun_family = AF_UNIX;
         std::memcpy(address.sun_path + 1, session.data(), session.size());
         const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + session.size());
         if (::connect(socket_.get(), reinterpret_cast<sockaddr*>(&address), length) != 0) return false;
-        const capture::Hello hello{capture::kMagic, capture::kVersion, digest, getpid(), 0};
+        const capture::Hello hello{capture::kMagic, capture::kVersion, digest, getpid(), kind};
         if (send(socket_.get(), &hello, sizeof(hello), MSG_NOSIGNAL) != sizeof(hello)) return false;
         int memory = -1;
         if (!receiveWelcome(memory)) return false;

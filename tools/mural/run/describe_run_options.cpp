@@ -93,7 +93,13 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("H1,H2");
     command.add_option("--min-nodes", a.minNodes, "begin with N nodes; late or failed ones join later (all)")
         ->type_name("N");
-    command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (the local path)")
+    command
+        .add_option("--remote-mural", a.remoteMural,
+                    "path of mural, or of a program with the native API, on the hosts (the local path)")
+        ->type_name("PATH");
+    command
+        .add_option("--node-program", a.nodeProgram,
+                    "program with the native API that the nodes run, if a script starts it (the program itself)")
         ->type_name("PATH");
     command.add_option("--report", a.report, "write the final report to this file, as one line of JSON")
         ->type_name("FILE");

@@ -83,6 +83,9 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         c.cacheBytes = *size;
     }
     c.remoteMural = a.remoteMural.value_or("");
+    if (a.nodeProgram && a.nodeProgram->empty())
+        return badValue("--node-program", "", "must be a program with the native API");
+    c.nodeProgram = a.nodeProgram.value_or("");
     int64_t restarts = c.restartNodes;
     if (auto r = readNumber("--restart-nodes", a.restartNodes, 0, kMaxRestarts, restarts); !r) return r;
     c.restartNodes = static_cast<int>(restarts);

@@ -84,7 +84,8 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
     if (c.display == Display::Windows && !usable) return unusable;
     if (!options.displayChosen && !usable && !own.empty() && !sized) return unusable;
     if (options.displayChosen && c.display == Display::App && !usable && !sized) return unusable;
-    if (!options.displayChosen) c.display = usable && !sized ? Display::App : Display::None;
+    const Display shown = programNeedsOne ? Display::App : Display::Windows; // by default, on a screen
+    if (!options.displayChosen) c.display = usable && !sized ? shown : Display::None;
 
     c.displayName = own;
     if ((usable && !sized) || (!programNeedsOne && c.display == Display::None)) return {};

@@ -4,6 +4,7 @@
 #include "nodes/launch/gl_libraries.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/commands.hpp"
+#include "tools/mural/run/native_program.hpp"
 #include "tools/mural/run/prepare_run.hpp"
 #include "tools/mural/run/run_session.hpp"
 
@@ -21,6 +22,14 @@ launch::CaptureEntries chooseEntries(const RunOptions& options, const launch::Pr
     if (options.config.explain)
         Console(true).error("capture: preloaded library, for " + own.front() + ", which GLVND does not load");
     return launch::CaptureEntries::VendorAndPreload;
+}
+
+// Prepares the environment of a program whose GL is captured.
+Result<void> prepareCapture(const RunOptions& options, const launch::ProgramCheck& program, PreparedRun& run) {
+    const auto library = launch::findCaptureLibrary(launch::ownBinary());
+    if (!library.ok()) return library.error();
+    const launch::CaptureEntries entries = chooseEntries(options, program, run.programEnvironment);
+    return launch::addCapture(run.programEnvironment, library.value(), run.config.session, entries);
 }
 
 int complain(const std::string& text, int status) {
@@ -48,14 +57,12 @@ int runCommand(const RunOptions& options) {
         launch::checkProgram(options.program.front(), run.programEnvironment.get("PATH").value_or("/usr/bin:/bin"));
     if (!program.ok()) return complain(program.message, program.exitStatus);
     run.programPath = program.path;
-    const auto library = launch::findCaptureLibrary(launch::ownBinary());
-    if (!library.ok()) return complain(library.error().message, launch::kExitUsage);
-    const launch::CaptureEntries entries = chooseEntries(options, program, run.programEnvironment);
-    if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session, entries); !r)
+    const bool isNative = !run.config.nodeProgram.empty() || usesNativeApi(program);
+    if (auto r = isNative ? prepareNativeProgram(options, program, run) : prepareCapture(options, program, run); !r)
         return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkOutput(run.config.out); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkReport(run.reportFile); !r) return complain(r.error().message, launch::kExitUsage);
-    if (auto r = chooseDisplay(options, true, run); !r) return complain(r.error().message, launch::kExitUsage);
+    if (auto r = chooseDisplay(options, !isNative, run); !r) return complain(r.error().message, launch::kExitUsage);
 
     if (!options.native) createSessionSocket(run);
 

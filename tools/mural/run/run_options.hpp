@@ -32,7 +32,7 @@ struct RunOptions {
 // Raw texts of the command line, validated by runOptionsFrom().
 struct RunArguments {
     OptionText tiles, tileQueue, chunkQueue, balance, size, position, nodes, out, save, display, tiling, localRendering,
-        gl, launch, stream, remoteMural, captureVia, restartNodes, minNodes, spareNodes;
+        gl, launch, stream, remoteMural, nodeProgram, captureVia, restartNodes, minNodes, spareNodes;
     OptionText config, canvas, projection, modelUnit, delta, cacheSize;
     std::vector<std::string> layouts;
     bool allLocal = false, printConfig = false;

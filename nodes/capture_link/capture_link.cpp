@@ -1,4 +1,4 @@
-#include "nodes/trace_player/capture_link.hpp"
+#include "nodes/capture_link/capture_link.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -22,7 +22,7 @@ Result<FileDescriptor> connectAbstract(const std::string& session) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     if (session.empty() || session.size() >= sizeof address.sun_path)
-        return linkError(session, "is not a session name; start the player with mural replay");
+        return linkError(session, "is not the name of a session; start the program with `mural run` or `mural replay`");
     std::memcpy(address.sun_path + 1, session.data(), session.size()); // [0] = 0: abstract
     const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + session.size());
     FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -60,10 +60,11 @@ bool receiveWhole(int socket, std::span<std::byte> into, FileDescriptor* memory,
 
 } // namespace
 
-Result<std::unique_ptr<CaptureLink>> CaptureLink::connect(const std::string& session, Deadline deadline) {
+Result<std::unique_ptr<CaptureLink>> CaptureLink::connect(const std::string& session, capture::ProgramKind kind,
+                                                          Deadline deadline) {
     auto socket = connectAbstract(session);
     if (!socket) return socket.error();
-    const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(), 0};
+    const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(), kind};
     if (send(socket->get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello)
         return linkError(session, "does not read; start it again");
     capture::Welcome welcome{};
@@ -140,7 +141,11 @@ void CaptureLink::takeAnswers() {
     while (head != tail) {
         const uint32_t there = tail - head;
         if (replyBytes_ > 0) {
-            const auto n = static_cast<uint32_t>(std::min<uint64_t>(replyBytes_, there));
+            const uint32_t slot = head & (header_->replyCapacity - 1);
+            const auto n =
+                static_cast<uint32_t>(std::min<uint64_t>({replyBytes_, there, header_->replyCapacity - slot}));
+            const std::byte* const from = capture::replies(header_) + slot;
+            if (takeReply_) replyContent_.insert(replyContent_.end(), from, from + n);
             replyBytes_ -= n;
             head += n;
         } else {
@@ -155,6 +160,8 @@ void CaptureLink::takeAnswers() {
         if (replyHeaderBytes_ == sizeof reply_ && replyBytes_ == 0) {
             replyHeaderBytes_ = 0;
             ++answered_;
+            if (takeReply_) takeReply_(reply_, replyContent_);
+            replyContent_.clear();
         }
     }
     header_->replyHead.store(head, std::memory_order_release);

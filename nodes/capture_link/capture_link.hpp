@@ -1,12 +1,15 @@
-// The connection of one replayed program to a head, without GL: the program's side of a capture's shared memory
-// (common/ipc/capture_ring.hpp). Used by one thread. Reads replies and drops them.
+// The connection of a program to a head, without GL, for replayed programs and those with the native API: the program's
+// side of a capture's shared memory (common/ipc/capture_ring.hpp). Used by one thread.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/ipc/capture_ring.hpp"
 #include "common/base/clock.hpp"
@@ -18,7 +21,8 @@ namespace mural {
 
 class CaptureLink {
 public:
-    static Result<std::unique_ptr<CaptureLink>> connect(const std::string& session, Deadline deadline);
+    static Result<std::unique_ptr<CaptureLink>> connect(const std::string& session, capture::ProgramKind kind,
+                                                        Deadline deadline);
     CaptureLink(const CaptureLink&) = delete;
     CaptureLink& operator=(const CaptureLink&) = delete;
     ~CaptureLink();
@@ -35,8 +39,11 @@ public:
     bool mayGoOn(uint32_t submittedFrame); // applies the session's current latency
     [[nodiscard]] const std::atomic<uint32_t>& framesWord() const { return header_->framesDone; }
 
+    // Receives each reply. Without it, replies are dropped.
+    using TakeReply = std::function<void(const wire::ReplyHeader& header, std::span<const std::byte> bytes)>;
+    void onReply(TakeReply take) { takeReply_ = std::move(take); }
     void requested() { ++requested_; }
-    [[nodiscard]] uint64_t unanswered(); // drops received replies; returns the number of missing ones
+    [[nodiscard]] uint64_t unanswered(); // takes received replies; returns the number of missing ones
     [[nodiscard]] const std::atomic<uint32_t>& answersWord() const { return header_->replyTail; }
 
     // Ends the program. Only gone() may be called afterwards. It returns true after the head has detected the end and
@@ -58,6 +65,8 @@ private:
     wire::ReplyHeader reply_{};
     size_t replyHeaderBytes_ = 0; // received bytes of reply_
     uint64_t replyBytes_ = 0;     // missing bytes after the header
+    TakeReply takeReply_;
+    std::vector<std::byte> replyContent_; // received bytes, if takeReply_ is set
 };
 
 } // namespace mural

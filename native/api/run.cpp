@@ -1,0 +1,74 @@
+#include <cstdio>
+#include <exception>
+
+#include <mural/mural.hpp>
+
+#include "native/runtime/node_main.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int kFailed = 1, kNoSession = 2;
+constexpr int64_t kIdleMs = 10; // between calls of update() that draw nothing
+
+void complain(const char* program, const std::string& text) { std::fprintf(stderr, "%s: %s\n", program, text.c_str()); }
+
+// Draws frames until the application or the session ends.
+Result<void> drawFrames(Session& session, Application& application) {
+    const int64_t startNs = monotonicNowNs();
+    int64_t lastNs = startNs;
+    FrameClock clock;
+    clock.frame = 1;
+    while (session.isRunning()) {
+        const int64_t nowNs = monotonicNowNs();
+        clock.seconds = static_cast<double>(nowNs - startNs) / kNsPerS;
+        clock.sinceLast = static_cast<double>(nowNs - lastNs) / kNsPerS;
+        lastNs = nowNs;
+        switch (application.update(session, clock)) {
+        case Next::End: return session.finishAll();
+        case Next::Wait: session.wait(Deadline::inMs(kIdleMs)); break;
+        case Next::Frame: {
+            auto frame = session.startFrame();
+            if (!frame && session.isRunning()) return frame.error();
+            if (frame) clock.frame = *frame + 1;
+            break;
+        }
+        }
+    }
+    return {};
+}
+
+Result<void> runApplication(Session& session, Application& application, int argc, char** argv) {
+    try {
+        auto started = application.start(session, argc, argv);
+        return started ? drawFrames(session, application) : started;
+    } catch (const std::exception& e) {
+        return Error{std::string("the application has thrown: ") + e.what()};
+    } catch (...) {
+        return Error{"the application has thrown an unknown exception"};
+    }
+}
+
+} // namespace
+
+int run(int argc, char** argv, const Program& program) {
+    const char* const name = argc > 0 ? argv[0] : "mural";
+    if (const auto status = native::runNodeIfRequested(argc, argv, program)) return *status;
+    auto session = Session::open(argc, argv, program);
+    if (!session) {
+        complain(name, session.error().message);
+        return kNoSession;
+    }
+    const auto application = program.application ? program.application() : nullptr;
+    if (!application) {
+        complain(name, "the program makes no Application; set Program::application");
+        return kFailed;
+    }
+    const auto ran = runApplication(**session, *application, argc, argv);
+    if (!ran) complain(name, ran.error().message);
+    application->end(**session);
+    return ran ? 0 : kFailed;
+}
+
+} // namespace mural

@@ -1,0 +1,160 @@
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <unistd.h>
+#include <vector>
+
+#include <mural/mural.hpp>
+
+#include "common/base/clock.hpp"
+#include "native/runtime/node_main.hpp"
+#include "native/session/app_link.hpp"
+#include "objects/ends/object_writer.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int64_t kWelcomeMs = 20'000;
+constexpr uint32_t kDefaultWidth = 1280, kDefaultHeight = 720;
+
+// An odd multiplier that spreads consecutive numbers over 64 bits (splitmix64).
+constexpr uint64_t kSeedStep = 0x9e3779b97f4a7c15;
+
+// Replaces this process by `mural run` with the same command line. Returns only after a failure.
+Error startSession(int argc, char** argv) {
+    std::vector<std::string> words = {"mural", "run", "--", argv[0]};
+    if (argc > 0) words[3] = "/proc/self/exe";
+    char path[4096];
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+    if (length > 0) words[3].assign(path, static_cast<size_t>(length));
+    for (int i = 1; i < argc; ++i) words.emplace_back(argv[i]);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    execvp("mural", arguments.data());
+    return Error{"no session is running, and mural is not in PATH; start the program with mural run -- " +
+                 std::string(argc > 0 ? argv[0] : "PROGRAM")};
+}
+
+} // namespace
+
+class Session::Impl {
+public:
+    Result<void> connect(const std::string& session) {
+        auto link = native::AppLink::connect(
+            session, [this](uint32_t node, std::span<const std::byte> message) { takeRequest(node, message); },
+            Deadline::inMs(kWelcomeMs));
+        if (!link) return link.error();
+        link_ = std::move(*link);
+        objects::MasterOptions options;
+        options.keepsPushed = false; // the head serves nodes that join
+        writer_ = std::make_unique<objects::ObjectWriter>(*link_, options);
+        const capture::Welcome& welcome = link_->welcome();
+        const bool isSized = welcome.width > 0 && welcome.height > 0;
+        info_.nodes = static_cast<int>(welcome.nodeCount);
+        info_.width = static_cast<int>(isSized ? welcome.width : kDefaultWidth);
+        info_.height = static_cast<int>(isSized ? welcome.height : kDefaultHeight);
+        wire::WindowConfig window{};
+        window.width = static_cast<uint32_t>(info_.width);
+        window.height = static_cast<uint32_t>(info_.height);
+        window.red = window.green = window.blue = window.alpha = 8;
+        window.depth = 24;
+        window.stencil = 8;
+        window.doubleBuffer = 1;
+        for (int i = 0; i < 12; ++i) frame_.head[i] = i % 5 == 0 ? 1 : 0; // three rows of the identity
+        startNs_ = monotonicNowNs();
+        return link_->sendWindow(window);
+    }
+    ~Impl() {
+        states_.clear();
+        if (writer_) writer_->close();
+    }
+
+    Result<uint64_t> startFrame(Deadline deadline) {
+        link_->setDeadline(deadline);
+        for (auto& [key, state] : states_)
+            if (auto committed = state->commit(deadline); !committed) return committed.error();
+        const uint32_t number = number_ + 1;
+        frame_.number = number;
+        frame_.seconds = static_cast<double>(monotonicNowNs() - startNs_) / kNsPerS;
+        frame_.seed = number * kSeedStep;
+        if (auto sent = link_->sendFrame(frame_, number); !sent) return sent.error();
+        number_ = number;
+        writer_->frame(number);
+        if (auto done = link_->awaitCredit(number); !done) return done.error();
+        writer_->frameDone(link_->framesDone());
+        return uint64_t{number};
+    }
+    Result<void> finishAll(Deadline deadline) {
+        link_->setDeadline(deadline);
+        if (auto sent = link_->flush(); !sent) return sent;
+        return link_->awaitDone(number_);
+    }
+    void wait(Deadline deadline) {
+        link_->setDeadline(deadline);
+        link_->serve(deadline);
+    }
+    void setHead(const Matrix4& pose) {
+        for (const auto& row : pose.m)
+            for (const double value : row)
+                if (!std::isfinite(value)) return;
+        for (size_t i = 0; i < 12; ++i) frame_.head[i] = pose.m[i / 4][i % 4];
+    }
+
+    std::unique_ptr<native::AppLink> link_;
+    std::unique_ptr<objects::ObjectWriter> writer_; // uses link_
+    SessionInfo info_;
+    std::map<std::pair<std::type_index, std::string>, std::unique_ptr<AnyState>> states_;
+
+private:
+    void takeRequest(uint32_t node, std::span<const std::byte> message) {
+        if (!readers_.contains(node)) {
+            readers_.insert(node);
+            writer_->join(node, "node " + std::to_string(node));
+        }
+        if (auto taken = writer_->input(node, message, monotonicNowNs()); !taken)
+            std::fprintf(stderr, "mural: %s\n", taken.error().message.c_str());
+        writer_->tick(INT64_MAX); // answers at once
+    }
+
+    std::set<uint32_t> readers_;
+    wire::NativeFrame frame_{}; // the next one
+    uint32_t number_ = 0;       // of the last sent frame
+    int64_t startNs_ = 0;
+};
+
+Session::Session(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Session::~Session() = default;
+
+Result<std::unique_ptr<Session>> Session::open(int argc, char** argv, const Program& program) {
+    if (const auto status = native::runNodeIfRequested(argc, argv, program)) std::exit(*status);
+    const char* const name = std::getenv("MURAL_SESSION");
+    if (!name || !*name) return startSession(argc, argv);
+    auto impl = std::make_unique<Impl>();
+    if (auto connected = impl->connect(name); !connected) return connected.error();
+    return std::unique_ptr<Session>(new Session(std::move(impl)));
+}
+
+Session::AnyState* Session::findState(std::type_index type, const std::string& name) const {
+    const auto found = impl_->states_.find({type, name});
+    return found == impl_->states_.end() ? nullptr : found->second.get();
+}
+void Session::addState(std::type_index type, const std::string& name, std::unique_ptr<AnyState> state) {
+    impl_->states_[{type, name}] = std::move(state);
+}
+Result<std::unique_ptr<SharedObject>> Session::shareAny(const archive::TypeLayout& layout,
+                                                        const ShareOptions& options) {
+    return impl_->writer_->shareAny(layout, options);
+}
+
+Result<uint64_t> Session::startFrame(Deadline deadline) { return impl_->startFrame(deadline); }
+Result<void> Session::finishAll(Deadline deadline) { return impl_->finishAll(deadline); }
+void Session::wait(Deadline deadline) { impl_->wait(deadline); }
+void Session::setHead(const Matrix4& pose) { impl_->setHead(pose); }
+const SessionInfo& Session::info() const { return impl_->info_; }
+bool Session::isRunning() const { return impl_->link_->isAlive(); }
+
+} // namespace mural

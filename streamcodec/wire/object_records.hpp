@@ -1,0 +1,72 @@
+// Messages about distributed objects in the stream of a program with the native API (kOpObject). A message may be
+// longer than a packet: it then occupies several records, of which each states how many bytes follow in later records.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/record.hpp"
+
+namespace mural::wire {
+
+constexpr size_t kObjectPieceBytes = size_t{128} << 10; // of one record
+constexpr uint32_t kMaxObjectBytes = 1U << 30;          // of one message
+
+constexpr uint32_t kAllNodes = 0xffffffff;
+
+// Calls add(record) for each record of a message to a node, or to kAllNodes. Requires at most kMaxObjectBytes.
+template <class Add> void splitIntoRecords(uint32_t node, std::span<const std::byte> message, Add&& add) {
+    std::vector<std::byte> record;
+    do {
+        const size_t count = std::min(message.size(), kObjectPieceBytes);
+        const auto piece = message.first(count);
+        message = message.subspan(count);
+        const auto following = static_cast<uint32_t>(message.size());
+        const auto length = static_cast<uint32_t>(count);
+        const size_t words = 5 + (count + 3) / 4; // header in long form, then node, `following`, `length`, bytes
+        record.assign(words * 4, std::byte{0});
+        const uint32_t head[5] = {uint32_t{kOpObject} | record::kLongForm << 16, static_cast<uint32_t>(words), node,
+                                  following, length};
+        std::memcpy(record.data(), head, sizeof head);
+        if (count > 0) std::memcpy(record.data() + sizeof head, piece.data(), count);
+        add(std::span<const std::byte>(record));
+    } while (!message.empty());
+}
+
+// Joins the records of messages.
+class ObjectRecordJoiner {
+public:
+    // Takes the arguments of a record. Returns false if they are malformed.
+    bool add(std::span<const std::byte> arguments) {
+        uint32_t words[3] = {};
+        if (isComplete_) bytes_.clear();
+        isComplete_ = false;
+        if (arguments.size() < sizeof words) return false;
+        std::memcpy(words, arguments.data(), sizeof words);
+        arguments = arguments.subspan(sizeof words);
+        if (words[2] > arguments.size() || bytes_.size() + words[2] + uint64_t{words[1]} > kMaxObjectBytes)
+            return false;
+        bytes_.insert(bytes_.end(), arguments.begin(), arguments.begin() + words[2]);
+        node_ = words[0];
+        isComplete_ = words[1] == 0;
+        return true;
+    }
+    // Whether message() is complete.
+    [[nodiscard]] bool isComplete() const { return isComplete_; }
+    // The receiver: a node, or kAllNodes.
+    [[nodiscard]] uint32_t node() const { return node_; }
+    // Valid until the next add().
+    [[nodiscard]] std::span<const std::byte> message() const { return bytes_; }
+
+private:
+    std::vector<std::byte> bytes_;
+    uint32_t node_ = kAllNodes;
+    bool isComplete_ = false;
+};
+
+} // namespace mural::wire
