@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""Programs with the native API: every division of the work shows the picture of a single node, nodes come back, and
+faults of programs are reported.
+
+  native_programs.py --build build/release [--cases restarted_nodes,faults] [--list]
+"""
+
+import os
+import signal
+import sys
+import tempfile
+import time
+
+TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
+from harness import cases, pictures  # noqa: E402
+
+FRAMES = 6
+SIZE = "320x240"
+# Decompositions that show exactly the pixels of one node.
+EXACT = ["--tiles 2x2", "--tiles 3x1 --local-nodes 3", "--db 2", "--db 3", "--tiles 2x1 --db 2", "--dplex 2",
+         "--tile-queue 64x64 --local-nodes 3", "--db 2 --chunk-queue 8", "--balance auto --tiles 2x1",
+         "--tiles 2x1 --delta on", "--db 4 --composition binary-swap", "--db 4 --composition direct-send"]
+NODE = r"--mural-node\b"
+
+
+def program(context):
+    return os.path.join(context.build, "tests", "native", "native_scene")
+
+
+def draw(context, options, frames=FRAMES, fault="", environment=None, wanted=0, during=None):
+    """Returns (error or None, pictures, lines of standard error)."""
+    with tempfile.TemporaryDirectory(prefix="mural-native.") as folder:
+        out = os.path.join(folder, "out")
+        command = [program(context), "--frames", str(frames)] + (["--fault", fault] if fault else [])
+        path = os.path.dirname(context.mural) + ":" + os.environ.get("PATH", "/usr/bin:/bin")
+        more = options.split() + ["--display", "none", "--size", SIZE, "--out", out]
+        with context.run(command, more, dict({"PATH": path}, **(environment or {}))) as run:
+            wrong = during(run, out) if during else None
+            wrong = wrong or cases.check_end(run, wanted)
+            shown = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))] if os.path.isdir(out) else []
+            return wrong, shown, list(run.standard_error)
+
+
+SINGLE = {}  # by number of frames
+
+
+def single(context, frames=FRAMES):
+    """Returns the pictures of one node."""
+    if frames not in SINGLE:
+        wrong, shown, lines = draw(context, "--tiles 1x1", frames)
+        if wrong or len(shown) != frames:
+            raise SystemExit("one node fails: %s, %d pictures; %s" % (wrong, len(shown), " | ".join(lines[-3:])))
+        SINGLE[frames] = shown
+    return SINGLE[frames]
+
+
+def differing(wanted, shown):
+    if len(wanted) != len(shown):
+        return "%d pictures instead of %d" % (len(shown), len(wanted))
+    difference = pictures.Difference()
+    for number, (a, b) in enumerate(zip(wanted, shown), 1):
+        difference.add_pictures(a, b, "frame %d" % number)
+    return None if difference.pixels == 0 else "%d pixels differ, %s" % (difference.pixels, difference.place)
+
+
+@cases.case
+def decompositions_are_exact(context):
+    wanted = single(context)
+    if len({tuple(bytes(row) for row in picture.rows) for picture in wanted}) != FRAMES:
+        return "frames of one node repeat"
+    for options in EXACT:
+        wrong, shown, lines = draw(context, options)
+        wrong = wrong or differing(wanted, shown)
+        if wrong:
+            return "%s: %s; %s" % (options, wrong, " | ".join(lines[-3:]))
+    return None
+
+
+@cases.case
+def passes_show_something_else(context):
+    """Two samples, two eyes and a kernel show something else than one node; otherwise a pass would be ignored."""
+    wanted = single(context)
+    for options in ("--subpixel 2", "--stereo anaglyph", "--pixel 2x1"):
+        wrong, shown, _ = draw(context, options)
+        if wrong:
+            return "%s: %s" % (options, wrong)
+        quality = min(pictures.decibels(a, b) for a, b in zip(wanted, shown)) if len(shown) == FRAMES else 0
+        if differing(wanted, shown) is None or quality < 8:
+            return "%s: %d pictures, %.1f dB" % (options, len(shown), quality)
+    return None
+
+
+@cases.case
+def ignored_ranges_are_found(context):
+    """The planted fault of this test: a renderer that draws everything has the right picture, and one that draws the
+    wrong range has not."""
+    wanted = single(context)
+    wrong, shown, _ = draw(context, "--db 2", fault="range")
+    return wrong or differing(wanted, shown)
+
+
+@cases.case
+def restarted_nodes_are_exact(context):
+    frames = 200
+    wanted = single(context, frames)
+    for options in ("--tiles 2x1", "--db 2"):
+        def during(run, out):
+            deadline = time.monotonic() + 30
+            while time.monotonic() < deadline and (not os.path.isdir(out) or len(os.listdir(out)) < 10):
+                time.sleep(0.01)
+            nodes = run.processes(NODE)
+            if len(nodes) != 2:
+                return "%d nodes" % len(nodes)
+            os.kill(nodes[-1], signal.SIGKILL)
+            return None
+        wrong, shown, lines = draw(context, options, frames, during=during)
+        if wrong:
+            return "%s: %s" % (options, wrong)
+        if not any("is back" in line or "rejoin" in line for line in lines):
+            return "%s: no line about the node: %s" % (options, " | ".join(lines[-4:]))
+        wrong = differing(wanted[-20:], shown[-20:])
+        if wrong:
+            return "%s: after the return, %s" % (options, wrong)
+    return None
+
+
+@cases.case
+def faults_of_programs_are_reported(context):
+    for fault, words in (("throw", "Renderer::draw has thrown: thrown on purpose"), ("gl", "Renderer::draw leaves the GL error 0x0500"),
+                         ("layout", "Scene")):
+        wrong, shown, lines = draw(context, "--tiles 2x1", fault=fault)
+        if wrong:
+            return "%s: %s" % (fault, wrong)
+        if len(shown) != FRAMES or not any(words in line for line in lines):
+            return "%s: %d pictures, %s" % (fault, len(shown), " | ".join(lines))
+    wrong, _, lines = draw(context, "--tiles 2x1", environment={"NATIVE_SCENE_START": "1"}, wanted=2)
+    if wrong or not any("the renderer fails on purpose" in line for line in lines):
+        return "start: %s; %s" % (wrong, " | ".join(lines))
+    return None
+
+
+@cases.case
+def excluded_options_are_refused(context):
+    for options, words in (("--verify", "--verify"), ("--record f.mural", "--record"), ("--gl osmesa", "osmesa"),
+                           ("--nodes @wall", "waiting nodes")):
+        with context.run([program(context)], options.split()) as run:
+            status = run.status()
+            if status != 2 or not any(words in line for line in run.standard_error):
+                return "%s: status %s, %s" % (options, status, " | ".join(run.standard_error))
+    with context.run([context.program("immediate"), "--frames", "2"], ["--node-program", program(context), "--display", "none"]) as run:
+        if run.status() is None or not any("native API only" in line for line in run.standard_error + run.standard_output):
+            return "a captured program in a session of native nodes: %s" % " | ".join(run.standard_error)
+    return None
+
+
+@cases.case
+def scripts_start_native_programs(context):
+    wanted = single(context)
+    with tempfile.TemporaryDirectory(prefix="mural-native.") as folder:
+        script = os.path.join(folder, "start.sh")
+        with open(script, "w", encoding="ascii") as file:
+            file.write("#!/bin/sh\nexec \"$@\"\n")
+        os.chmod(script, 0o755)
+        out = os.path.join(folder, "out")
+        options = ["--node-program", program(context), "--tiles", "2x1", "--display", "none", "--size", SIZE, "--out", out]
+        with context.run([script, program(context), "--frames", str(FRAMES)], options) as run:
+            wrong = cases.check_end(run, 0)
+            if wrong:
+                return wrong
+        return differing(wanted, [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))])
+
+
+if __name__ == "__main__":
+    sys.exit(cases.main(__doc__))
