@@ -1,6 +1,7 @@
 #include "compositor/strategies/schedule.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <deque>
 #include <map>
 #include <utility>
@@ -68,6 +69,55 @@ Schedule makeSchedule(Strategy strategy, int ranks, int32_t rows) {
     case Strategy::Streaming: makeStreaming(maker); break;
     }
     return maker.finish();
+}
+
+namespace {
+
+// The collector composites the nearest neighbours in the order first.
+void makeSerialInOrder(ScheduleMaker& maker, std::span<const int> order) {
+    const auto own = static_cast<int>(std::ranges::find(order, 0) - order.begin());
+    std::vector<RowTransfer> all;
+    for (int at = 0; at < maker.ranks(); ++at) {
+        if (at == own) continue;
+        const auto kind = at < own ? Step::Kind::FoldEarlier : Step::Kind::FoldLater;
+        all.push_back({order[static_cast<size_t>(at)], 0, maker.band(0, 1), kind, std::abs(at - own)});
+    }
+    maker.round(all);
+}
+
+Step::Kind reversed(Step::Kind kind) {
+    if (kind == Step::Kind::FoldEarlier) return Step::Kind::FoldLater;
+    return kind == Step::Kind::FoldLater ? Step::Kind::FoldEarlier : kind;
+}
+
+} // namespace
+
+// Makes the schedule of positions, and replaces positions by ranks. The collector's position is the first one: an order
+// in which it is the last is reversed, together with the sides of all pieces.
+Schedule makeSchedule(Strategy strategy, std::span<const int> order, int32_t rows) {
+    const auto ranks = static_cast<int>(order.size());
+    if (strategy == Strategy::Serial) {
+        ScheduleMaker maker(ranks, rows);
+        makeSerialInOrder(maker, order);
+        return maker.finish();
+    }
+    std::vector<int> at(order.begin(), order.end());
+    const bool isReversed = at.back() == 0 && ranks > 1;
+    if (isReversed) std::ranges::reverse(at);
+    const Schedule positions = makeSchedule(strategy, ranks, rows);
+    Schedule schedule(order.size());
+    for (size_t position = 0; position < at.size(); ++position)
+        for (Step step : positions[position]) {
+            step.peer = at[static_cast<size_t>(step.peer)];
+            if (isReversed) step.kind = reversed(step.kind);
+            schedule[static_cast<size_t>(at[position])].push_back(step);
+        }
+    if (at.front() != 0 && rows > 0) {
+        schedule[static_cast<size_t>(at.front())].push_back({Step::Kind::Send, 0, {0, rows}, 0});
+        schedule[0].push_back({Step::Kind::Place, at.front(), {0, rows}, 0});
+        countStages(schedule);
+    }
+    return schedule;
 }
 
 } // namespace mural::compositor

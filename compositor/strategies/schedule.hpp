@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "compositor/strategies/strategy.hpp"
@@ -43,5 +44,9 @@ using Schedule = std::vector<std::vector<Step>>;
 
 // Requires ranks >= 1.
 [[nodiscard]] Schedule makeSchedule(Strategy strategy, int ranks, int32_t rows);
+
+// The same for another draw order: `order` holds the ranks, the first drawn first. Rank 0 remains the collector. If it
+// is neither first nor last, it receives the complete picture in a step of its own, except with the serial strategy.
+[[nodiscard]] Schedule makeSchedule(Strategy strategy, std::span<const int> order, int32_t rows);
 
 } // namespace mural::compositor

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <exception>
+#include <utility>
 
 #include <mural/mural.hpp>
 
@@ -14,8 +15,10 @@ constexpr int64_t kIdleMs = 10; // between calls of update() that draw nothing
 
 void complain(const char* program, const std::string& text) { std::fprintf(stderr, "%s: %s\n", program, text.c_str()); }
 
-// Draws frames until the application or the session ends.
-Result<void> drawFrames(Session& session, Application& application) {
+// Draws frames until the application or the session ends. Nodes that draw nothing for a while, because they are
+// restarted or stopped, do not end it.
+Result<void> drawFrames(Session& session, Application& application, const char* name) {
+    bool hasComplained = false;
     const int64_t startNs = monotonicNowNs();
     int64_t lastNs = startNs;
     FrameClock clock;
@@ -30,8 +33,12 @@ Result<void> drawFrames(Session& session, Application& application) {
         case Next::Wait: session.wait(Deadline::inMs(kIdleMs)); break;
         case Next::Frame: {
             auto frame = session.startFrame();
-            if (!frame && session.isRunning()) return frame.error();
-            if (frame) clock.frame = *frame + 1;
+            if (frame) {
+                clock.frame = *frame + 1;
+                hasComplained = false;
+            } else if (session.isRunning() && !std::exchange(hasComplained, true)) {
+                complain(name, frame.error().message + "; waiting");
+            }
             break;
         }
         }
@@ -42,7 +49,7 @@ Result<void> drawFrames(Session& session, Application& application) {
 Result<void> runApplication(Session& session, Application& application, int argc, char** argv) {
     try {
         auto started = application.start(session, argc, argv);
-        return started ? drawFrames(session, application) : started;
+        return started ? drawFrames(session, application, argc > 0 ? argv[0] : "mural") : started;
     } catch (const std::exception& e) {
         return Error{std::string("the application has thrown: ") + e.what()};
     } catch (...) {

@@ -1,8 +1,10 @@
 #include "native/runtime/native_player.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
 #include "common/log/log.hpp"
@@ -243,6 +245,7 @@ void NativePlayer::compose(uint32_t clientId, const FramePart& part, uint32_t fr
     if (!isComposing_ || !out_.composeParts) return;
     for (; !returns_.empty(); returns_.pop_front()) returns_.front()();
     CompositeRule rule;
+    rule.blends = task.composition.by == Composition::By::Over;
     rule.function = functionOf(task.composition.depthTest);
     rule.clearedColour = cleared.colour[0];
     rule.clearedDepth = cleared.depth[0];
@@ -252,9 +255,33 @@ void NativePlayer::compose(uint32_t clientId, const FramePart& part, uint32_t fr
     own.colour.resize(static_cast<size_t>(part.drawn.area()));
     own.depth.resize(own.colour.size());
     target_->readColour(part.drawn, GL_RGBA, own.colour.data());
-    target_->readDepth(part.drawn, own.depth.data());
-    (void)out_.composeParts(own, rule);
+    if (rule.blends)
+        std::ranges::fill(own.depth, rule.clearedDepth);
+    else
+        target_->readDepth(part.drawn, own.depth.data());
+    (void)out_.composeParts(own, rule, rule.blends ? blendOrder(task) : std::vector<int>());
     if (!part.shown.empty()) composed_ = std::move(own);
+}
+
+// The ranks from back to front. Every node evaluates the same function, so all nodes agree.
+std::vector<int> NativePlayer::blendOrder(TaskState& state) {
+    RenderTask task(state);
+    std::vector<double> distances(ranges_.size());
+    runTask("Renderer::order", [&] {
+        for (size_t i = 0; i < ranges_.size(); ++i) distances[i] = renderer_->order(task, ranges_[i]);
+        if (!std::ranges::all_of(distances, [](double d) { return std::isfinite(d); })) {
+            std::ranges::fill(distances, 0); // the ranges then decide, on all nodes alike
+            throw std::range_error("a position that is not finite");
+        }
+    });
+    std::vector<int> order(ranges_.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+    const auto isBehind = [&](int a, int b) {
+        const auto x = static_cast<size_t>(a), y = static_cast<size_t>(b);
+        return distances[x] != distances[y] ? distances[x] > distances[y] : ranges_[x].start > ranges_[y].start;
+    };
+    std::ranges::stable_sort(order, isBehind);
+    return order;
 }
 
 // The pixels of `box` in the output picture, B G R A, rows bottom first.
@@ -321,6 +348,7 @@ void NativePlayer::reportOnce(const std::string& text) {
 void NativePlayer::resetShares(bool itself, std::function<void()> returned) {
     if (!takesRanges()) return;
     share_ = config_.pass.share; // new shares follow
+    ranges_ = config_.ranges;
     sharesNumber_ = 0;
     isComposing_ = isComposing_ || itself;
     returns_.push_back(std::move(returned));
@@ -330,6 +358,9 @@ void NativePlayer::moveShares(const RangeAssignment& shares) {
     const auto node = static_cast<size_t>(config_.node);
     if (!takesRanges() || node >= shares.ofNodes.size()) return;
     share_ = shares.ofNodes[node];
+    const size_t collector = node - static_cast<size_t>(config_.pass.range);
+    for (size_t i = 0; i < ranges_.size() && collector + i < shares.ofNodes.size(); ++i)
+        ranges_[i] = shares.ofNodes[collector + i];
     sharesNumber_ = shares.number;
 }
 

@@ -51,7 +51,11 @@ private:
     };
 
     NativePlayer(const PlayerConfig& config, PlayerOutputs outputs, std::unique_ptr<Renderer> renderer)
-        : config_(config), out_(std::move(outputs)), renderer_(std::move(renderer)), share_(config.pass.share) {}
+        : config_(config),
+          out_(std::move(outputs)),
+          renderer_(std::move(renderer)),
+          share_(config.pass.share),
+          ranges_(config.ranges) {}
 
     Client& clientOf(uint32_t id);
     void takeObjects(Client& client, uint16_t opcode, std::span<const std::byte> arguments);
@@ -60,6 +64,7 @@ private:
     void drawFrame(Client& client, uint32_t clientId, const FramePart& part, const wire::WindowConfig& window,
                    uint32_t frame);
     void compose(uint32_t clientId, const FramePart& part, uint32_t frame, PicturePart pixel, TaskState& task);
+    std::vector<int> blendOrder(TaskState& state);
     const std::byte* pixelsOf(const FramePart& part, const PixelViewport& box);
     // Runs a task. Reports exceptions and GL errors once per text.
     void runTask(const char* name, const std::function<void()>& task);
@@ -79,6 +84,7 @@ private:
     bool isComposing_ = true; // false: in resync, no composition before resetShares()
     std::optional<ViewportAssignment> areas_;
     Range share_;
+    std::vector<Range> ranges_;                 // of all nodes of the picture, by rank
     uint32_t sharesNumber_ = 0;                 // 0: the initial shares
     std::deque<std::function<void()>> returns_; // to be called before the next composition
     std::optional<FramePart> lastPart_;

@@ -39,7 +39,7 @@ public:
     Result<void> sendFrame(const wire::NativeFrame& frame, uint32_t number);
     // Sends everything so far.
     Result<void> flush();
-    // Waits until the nodes may be this frame behind. Serves requests meanwhile.
+    // Waits until the frame after this one may be sent. Serves requests meanwhile.
     Result<void> awaitCredit(uint32_t frame);
     // Waits until all nodes have drawn this frame. Serves requests meanwhile.
     Result<void> awaitDone(uint32_t frame);

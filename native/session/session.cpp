@@ -75,6 +75,8 @@ public:
 
     Result<uint64_t> startFrame(Deadline deadline) {
         link_->setDeadline(deadline);
+        if (auto ready = link_->awaitCredit(number_); !ready) return ready.error();
+        writer_->frameDone(link_->framesDone());
         for (auto& [key, state] : states_)
             if (auto committed = state->commit(deadline); !committed) return committed.error();
         const uint32_t number = number_ + 1;
@@ -84,8 +86,6 @@ public:
         if (auto sent = link_->sendFrame(frame_, number); !sent) return sent.error();
         number_ = number;
         writer_->frame(number);
-        if (auto done = link_->awaitCredit(number); !done) return done.error();
-        writer_->frameDone(link_->framesDone());
         return uint64_t{number};
     }
     Result<void> finishAll(Deadline deadline) {
@@ -115,12 +115,14 @@ private:
             readers_.insert(node);
             writer_->join(node, "node " + std::to_string(node));
         }
-        if (auto taken = writer_->input(node, message, monotonicNowNs()); !taken)
+        constexpr int kMaxComplaints = 10;
+        if (auto taken = writer_->input(node, message, monotonicNowNs()); !taken && complaints_++ < kMaxComplaints)
             std::fprintf(stderr, "mural: %s\n", taken.error().message.c_str());
         writer_->tick(INT64_MAX); // answers at once
     }
 
     std::set<uint32_t> readers_;
+    int complaints_ = 0;        // about messages of nodes
     wire::NativeFrame frame_{}; // the next one
     uint32_t number_ = 0;       // of the last sent frame
     int64_t startNs_ = 0;

@@ -1,5 +1,6 @@
 #include "nodes/exchange/part_composition.hpp"
 
+#include "compositor/kernels/blend_over.hpp"
 #include "compositor/kernels/z_select.hpp"
 
 namespace mural {
@@ -55,6 +56,13 @@ void foldAtClearDepth(const CompositeRow& r, LayerOrder side, const CompositeRul
 } // namespace
 
 void compositeRow(const CompositeRow& row, LayerOrder side, const CompositeRule& rule) {
+    if (rule.blends) {
+        compositor::blendOverRow(compositor::PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(row.colour),
+                                 reinterpret_cast<const std::byte*>(row.otherColour), row.count,
+                                 side == LayerOrder::Later ? compositor::SourceSide::InFront
+                                                           : compositor::SourceSide::Behind);
+        return;
+    }
     if (rule.deep) return foldDeep(row, side, rule);
     compositor::ZArea z;
     z.depth = row.depth;

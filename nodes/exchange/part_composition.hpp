@@ -10,6 +10,7 @@
 namespace mural {
 
 struct CompositeRule {
+    bool blends = false; // premultiplied colours, the later over the earlier; the depths do not matter
     // Less, LessOrEqual, Greater or GreaterOrEqual
     compositor::DepthFunction function = compositor::DepthFunction::Less;
     uint32_t clearedColour = 0, clearedDepth = 0;

@@ -56,14 +56,16 @@ void PictureComposer::returned(int rank, uint32_t incarnation, const std::set<in
     log::debug(log::Topic::Exchange, "range ", rank + 1, " is back; strategy ", nameOf(strategy_));
 }
 
-PixelViewport PictureComposer::compose(PicturePart& part, const CompositeRule& rule) {
+PixelViewport PictureComposer::compose(PicturePart& part, const CompositeRule& rule, const std::vector<int>& order) {
     const SpanScope composes(SpanKind::Compose);
     agree();
     const int64_t beganNs = monotonicNowNs();
-    if (rows_ != part.id.box.h) {
+    if (rows_ != part.id.box.h || order_ != order) {
         rows_ = part.id.box.h;
-        steps_ =
-            std::move(compositor::makeSchedule(strategy_, config_.ranks, rows_)[static_cast<size_t>(config_.rank)]);
+        order_ = order;
+        compositor::Schedule schedule = order.empty() ? compositor::makeSchedule(strategy_, config_.ranks, rows_)
+                                                      : compositor::makeSchedule(strategy_, order, rows_);
+        steps_ = std::move(schedule[static_cast<size_t>(config_.rank)]);
     }
     CompositeRule used = rule;
     using compositor::DepthFunction;

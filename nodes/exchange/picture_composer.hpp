@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "compositor/strategies/schedule.hpp"
 #include "nodes/exchange/part_message.hpp"
@@ -34,7 +35,8 @@ public:
 
     // Called by each node with its part. Afterwards the collector's part is the whole picture; other nodes' parts are
     // undefined. Returns the area that may have changed. Reports each lost node once; its range is missing.
-    PixelViewport compose(PicturePart& part, const CompositeRule& rule);
+    // `order`: the ranks, the first drawn first; empty: in the order of their numbers. Equal on all nodes.
+    PixelViewport compose(PicturePart& part, const CompositeRule& rule, const std::vector<int>& order = {});
     // From the next picture on, this incarnation of the rank takes part, and so do all ranks except `absent`. All
     // participants must call this between the same two pictures.
     void returned(int rank, uint32_t incarnation, const std::set<int>& absent);
@@ -53,6 +55,7 @@ private:
     compositor::Strategy strategy_; // serial while nodes are lost
     PartRoutes& routes_;
     int32_t rows_ = -1;
+    std::vector<int> order_;               // of steps_
     std::vector<compositor::Step> steps_;  // of this rank, for the current number of rows
     std::map<int, PlaneEncoder> encoders_; // per link
     PlaneDecoder decoder_;

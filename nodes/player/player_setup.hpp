@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/base/picture_format.hpp"
 #include "common/geometry/pixel_viewport.hpp"
@@ -41,7 +42,8 @@ struct PlayerConfig {
     bool anyMovesZoom = false;               // the zooms of `areas` change, of any node; they apply to this node if…
     bool movesZoom = false;                  // …its own zoom changes
     RenderPass pass;
-    bool answers = true;                      // answers requests for pixels; false: nodes of another pass answer them
+    std::vector<Range> ranges; // the initial shares of all nodes of this picture, by rank; empty: there is one node
+    bool answers = true;       // answers requests for pixels; false: nodes of another pass answer them
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
     std::optional<ScreenView> screen;         // includes the position of the eye
     bool skips = false;                       // draws no frames until drawAgain()
@@ -89,7 +91,8 @@ struct PlayerOutputs {
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     // Sort-last (features/sort_last.cpp): composites the parts of all nodes of the picture. Afterwards the collector's
     // part is the whole picture. Returns the area of it that may have changed.
-    std::function<PixelViewport(PicturePart&, const CompositeRule&)> composeParts;
+    // `order`: see PictureComposer::compose.
+    std::function<PixelViewport(PicturePart&, const CompositeRule&, const std::vector<int>& order)> composeParts;
     // Reads the next packet of the stream while the player plays an earlier one, and passes it to
     // StreamPlayer::preview. Blocks until there is one. Returns false if none will come.
     std::function<bool()> readAhead;

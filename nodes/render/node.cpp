@@ -83,7 +83,9 @@ private:
     // Reads one packet for PlayerOutputs::readAhead. Returns false if the player's program or the session has ended.
     bool readAhead() {
         std::span<const std::byte> payload;
+        work_.pause();
         auto header = line_->next(payload);
+        work_.begin();
         if (!header) return false;
         ahead_.push_back({header.value(), {payload.begin(), payload.end()}});
         if (header->stream != 0) {
@@ -244,8 +246,8 @@ private:
             sendMessage(wire::NodeMessage::ObjectRequest, std::as_bytes(std::span(&client, 1)), message);
         };
         if (exchange_)
-            outputs.composeParts = [this](PicturePart& part, const CompositeRule& rule) {
-                return exchange_->composer().compose(part, rule);
+            outputs.composeParts = [this](PicturePart& part, const CompositeRule& rule, const std::vector<int>& order) {
+                return exchange_->composer().compose(part, rule, order);
             };
         return outputs;
     }

@@ -35,6 +35,8 @@ PlayerConfig playerConfigOf(const NodeSetup& setup, const std::string& renderer)
     config.anyMovesZoom = setup.anyMovesZoom;
     config.movesZoom = setup.movesZoom;
     config.pass = setup.pass;
+    for (size_t i = 0; i + 2 <= setup.ranges.size(); i += 2)
+        config.ranges.push_back({setup.ranges[i], setup.ranges[i + 1]});
     config.readback = setup.sendPictures ? readbackBy(renderer, setup.readback) : Readback::Direct;
     config.deepPictures = setup.deepPictures;
     config.answers = setup.answers;

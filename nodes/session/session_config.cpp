@@ -190,6 +190,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("incarnation", s.incarnation);
     visit("cacheBytes", s.cacheBytes, 1 << 20);
     visit("collector", s.collector, 0);
+    visit("shares", s.ranges);
     visit("composition", s.composition);
     visit("exchangeSecret", s.exchangeSecret);
     visit("exchangeHere", s.exchangeHere);

@@ -134,6 +134,7 @@ struct NodeSetup {
     bool skipsFrames = false;  // with isResyncing: skips drawing until Synchronize
     bool recordsSpans = false; // statistics are on: sends FrameSpans
     uint32_t incarnation = 0;  // number of restarts
+    std::vector<double> ranges; // start and end of the share of every node of this picture, by rank; empty: one node
     int collector = 0; // node that composes this node's picture; the nodes of the ranges follow it, one per range
     std::string composition = "serial"; // name of the compositor::Strategy for that picture
     // in hex; for nodes that exchange parts of a picture or share a swap barrier; empty: none

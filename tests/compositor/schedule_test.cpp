@@ -22,9 +22,14 @@ struct Message {
 // Executes a schedule; returns the first error, or nothing.
 class Simulation {
 public:
-    Simulation(const Schedule& schedule, int32_t rows) : schedule_(schedule), rows_(rows) {
-        for (uint32_t rank = 0; rank < schedule.size(); ++rank)
-            held_.emplace_back(static_cast<size_t>(rows), DrawOrder{rank, rank + 1});
+    // order: the ranks, the first drawn first; empty: in the order of their numbers.
+    Simulation(const Schedule& schedule, int32_t rows, const std::vector<int>& order = {})
+        : schedule_(schedule), rows_(rows) {
+        for (uint32_t rank = 0; rank < schedule.size(); ++rank) {
+            const auto found = std::ranges::find(order, static_cast<int>(rank));
+            const auto at = order.empty() ? rank : static_cast<uint32_t>(found - order.begin());
+            held_.emplace_back(static_cast<size_t>(rows), DrawOrder{at, at + 1});
+        }
     }
 
     std::string wrong() {
@@ -182,6 +187,29 @@ TEST(Schedule, isCheckedForFaults) {
 TEST(Strategy, parsesNames) {
     for (const Strategy s : kEveryStrategy) EXPECT_EQ(strategyNamed(nameOf(s)), s);
     EXPECT_FALSE(strategyNamed("swap"));
+}
+
+// Every permutation of few ranks, and random ones of more.
+TEST(Schedule, compositesInAnyOrder) {
+    for (const Strategy strategy : {Strategy::Serial, Strategy::DirectSend, Strategy::BinarySwap,
+                                    Strategy::TwoThreeSwap, Strategy::RadixK, Strategy::Streaming})
+        for (int ranks = 1; ranks <= 9; ++ranks) {
+            std::vector<int> order(static_cast<size_t>(ranks));
+            for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+            for (int tries = 0; tries < 130; ++tries) {
+                for (const int32_t rows : {0, 1, 17}) {
+                    const Schedule schedule = makeSchedule(strategy, order, rows);
+                    const std::string wrong = Simulation(schedule, rows, order).wrong();
+                    ASSERT_TRUE(wrong.empty()) << nameOf(strategy) << ", " << ranks << " ranks: " << wrong;
+                }
+                if (ranks <= 5)
+                    std::ranges::next_permutation(order);
+                else
+                    for (size_t i = order.size() - 1; i > 0; --i) // Fisher-Yates by a fixed sequence
+                        std::swap(order[i],
+                                  order[static_cast<size_t>(tries * 7919 + static_cast<int>(i) * 104729) % (i + 1)]);
+            }
+        }
 }
 
 } // namespace

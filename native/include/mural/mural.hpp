@@ -38,7 +38,7 @@ struct FrameClock {
 };
 
 struct SessionInfo {
-    int nodes = 0;             // render nodes
+    int nodes = 0;             // render nodes at the start
     int width = 0, height = 0; // of the picture, in pixels
 };
 
@@ -86,8 +86,9 @@ public:
         return Shared<T>(std::move(*object), std::move(value));
     }
 
-    // Commits all changed objects, and sends the frame. Returns its number. Waits while the nodes are more than the
-    // latency of the session behind. Errors: the deadline has passed, and which nodes are behind; the session is over.
+    // Waits until the nodes are not further behind than the latency of the session permits. Then commits all changed
+    // objects, and sends the frame. Returns its number. Errors: the deadline has passed, and nothing was sent; the
+    // session is over.
     Result<uint64_t> startFrame(Deadline deadline = Deadline::inMs(10'000));
     // Waits until all nodes have drawn every frame so far. Errors as startFrame().
     Result<void> finishAll(Deadline deadline = Deadline::inMs(10'000));

@@ -70,7 +70,9 @@ struct GlWish {
 struct Composition {
     enum class By : uint8_t {
         Depth, // the fragment that passes the depth test
-        Over,  // premultiplied colours, blended from back to front by Renderer::order
+        // Premultiplied colours, blended from back to front by Renderer::order. The part of a range must be convex, and
+        // clear() must leave transparent black: a background belongs into overlay().
+        Over,
     };
     // The depth test of the renderer's draws.
     enum class DepthTest : uint8_t { Less, LessOrEqual, Greater, GreaterOrEqual };

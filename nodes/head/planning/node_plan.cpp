@@ -155,6 +155,10 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.transferScale = node.transferScale;
     setup.screen = node.screen;
     setup.collector = node.collector;
+    if (node.pass.ranges > 1)
+        for (const NodePlan& other : plan.nodes) // in the order of their ranks
+            if (!other.isVacant && other.collector == node.collector && other.pass.ranges > 1)
+                setup.ranges.insert(setup.ranges.end(), {other.pass.share.start, other.pass.share.end});
     setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));
     setup.pictureCodec = node.pictureCodec;
     setup.windowPixels = config.display == Display::App;

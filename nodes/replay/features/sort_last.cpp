@@ -357,7 +357,7 @@ void Replay::composeRanges(Window& w) {
     ++r.serial;
     readPart(w, drawn, part);
     if (!out_.composeParts) return;
-    const PixelViewport changed = out_.composeParts(part, r.rule);
+    const PixelViewport changed = out_.composeParts(part, r.rule, {});
     if (collects() && !changed.empty()) writePart(part, changed);
 }
 
