@@ -11,7 +11,7 @@ namespace mural::examples {
 
 // Distance of the object's centre from the room's origin, and radius of the object there. Both eye and wall of a
 // session without a configuration file see the whole object.
-constexpr double kObjectDistance = 4.5, kObjectRadius = 1;
+constexpr double kObjectDistance = 4, kObjectRadius = 1;
 
 [[nodiscard]] inline Matrix4 scaling(double x, double y, double z) {
     Matrix4 matrix;
@@ -21,12 +21,12 @@ constexpr double kObjectDistance = 4.5, kObjectRadius = 1;
     return matrix;
 }
 
-// Returns the rotation by `turn` about the vertical axis, then by `pitch` about the horizontal one, in degrees.
+// Returns the rotation by `pitch` about the axis to the right, then by `turn` about the vertical axis, in degrees.
 [[nodiscard]] inline Matrix4 rotation(double turn, double pitch) {
     const double a = turn * std::numbers::pi / 180, b = pitch * std::numbers::pi / 180;
     const Matrix4 about = Matrix4::rows({std::cos(a), 0, std::sin(a)}, {0, 1, 0}, {-std::sin(a), 0, std::cos(a)});
     const Matrix4 tilt = Matrix4::rows({1, 0, 0}, {0, std::cos(b), -std::sin(b)}, {0, std::sin(b), std::cos(b)});
-    return tilt * about;
+    return about * tilt;
 }
 
 // Transforms an object with a centre and a radius to the room, and back.

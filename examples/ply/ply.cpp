@@ -25,7 +25,7 @@ constexpr const char* kHelp = R"(Shows a mesh: PLY, OFF, STL or OBJ, also compre
   --frames N            ends after N frames
   --turn-per-frame DEG  turns by a fixed angle per frame, for reproducible pictures
   --turn-per-second DEG turns by time (default 20)
-  --pitch DEG           tilts the mesh towards the viewer (default 0); -90 for meshes whose z axis points up
+  --pitch DEG           tilts the mesh towards the viewer (default 0); -90 if its z axis points up
   --colour RRGGBB       colour of the mesh (default e0d0b8)
   --report              nodes print how many leaves of the mesh they hold
 
