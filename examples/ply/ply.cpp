@@ -153,7 +153,8 @@ in vec3 surface;
 out vec4 pixel;
 void main() {
     float light = abs(dot(normalize(eyeNormal), normalize(eyePosition)));
-    pixel = vec4(surface * (.12 + .88 * light) + .25 * pow(light, 40.), 1);
+    float shine = light * light * light * light;
+    pixel = vec4(surface * (.12 + .88 * light) + .25 * shine * shine * shine, 1);
 })";
 
 // A leaf in the memory of the GL.
