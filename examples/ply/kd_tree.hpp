@@ -13,8 +13,8 @@
 namespace mural::examples {
 
 // Smaller leaves cull better, larger ones need fewer draws. With the largest mesh of tools/example-data and four tiles,
-// the busiest node needs .31 of the CPU time of one node with 1024 triangles, .34 with 2048, and .38 with 4096. One node
-// needs the same time with all three.
+// the busiest node needs .31 of the CPU time of one node with 1024 triangles, .34 with 2048, and .38 with 4096. One
+// node needs the same time with all three.
 constexpr uint32_t kMaxLeafTriangles = 1024;
 
 struct Box {
