@@ -22,7 +22,7 @@ struct BlobIntakeOptions {
     OpenOptions open;
 };
 
-// Requests go to the writer in pieces of kWindowBytes, so the reader bounds what is in transit. A request without a
+// Requests go to the writer in pieces of kWindowBytes, so the reader bounds the bytes in transit. A request without a
 // reply is repeated after kRetryNs.
 class BlobIntake {
 public:

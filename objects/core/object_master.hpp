@@ -49,8 +49,8 @@ public:
 
     // Introduces an object. Errors: the name is too long, too many objects.
     Result<ObjectNumber> share(const ObjectDescription& description);
-    // Commits the next version. The first commit, and those of other than Sharing::Delta, have all slots. Requires a
-    // shared object. Errors: a static object has a version, slots are missing, a value has 4 GiB or more.
+    // Commits the next version. The first commit has all slots, and with another sharing than Delta every commit.
+    // Requires a shared object. Errors: a static object has a version, slots are missing, a value has 4 GiB or more.
     Result<Version> commit(ObjectNumber number, const ObjectChange& change);
     void unshare(ObjectNumber number);
 

@@ -79,7 +79,7 @@ Result<ObjectReader::AnySnapshot> ObjectReader::Core::decode(const Lookup& looku
     if (!made)
         return Error{"cannot read " + lookup.object + " version " + std::to_string(lookup.state->version) + ": " +
                      made.error().message + "; the last good version stays in use"};
-    // States that the mirror has dropped, and nobody reads, leave with their snapshots.
+    // Snapshots leave with their states: no mirror keeps these, and no caller reads them.
     std::erase_if(known.entries, [](const auto& entry) { return entry.state.use_count() == 1; });
     known.entries.push_back({lookup.state, made.value()});
     return made;

@@ -15,7 +15,7 @@ namespace mural {
 struct ObjectReader::Core {
     Core(objects::MessageSink& sink, const objects::BlobIntakeOptions& options) : mirror(sink, options) {}
 
-    // The snapshots of one object. Decoding holds `mutex`, not that of the mirror.
+    // The snapshots of one object. Decoding holds `mutex`, but not the mutex of the mirror.
     struct Snapshots {
         struct Entry {
             objects::StatePointer state;

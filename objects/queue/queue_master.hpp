@@ -26,7 +26,7 @@ public:
     void clear();
     // Drops items of frames before `frame` that no reader has received.
     void dropBefore(uint64_t frame);
-    // Ends the queue: after its last item is finished, all readers are told.
+    // Ends the queue: after its last item is finished, all readers receive Closed.
     void close();
 
     Result<void> input(PeerId reader, const AskMessage& message);

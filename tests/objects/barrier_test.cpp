@@ -90,7 +90,7 @@ TEST(ObjectBarrier, namesTheMissingMembersAtTheDeadline) {
     ASSERT_TRUE(world.member(1).result());
     EXPECT_NE(world.member(1).result()->error().message.find("middle, right did not enter"), std::string::npos)
         << world.member(1).result()->error().message;
-    // The round stays open: nobody passes without the late member.
+    // The round stays open: no member passes without the late one.
     world.member(2).enter(0);
     world.member(3).enter(0);
     world.exchange(101'000'000);

@@ -49,7 +49,7 @@ private:
         bool isShared = true;
         std::vector<ModelVersion> versions;
     };
-    // What a party must know after the messages that it has received.
+    // The versions that a party must have after its received messages.
     struct Expectation {
         std::map<ObjectNumber, Version> newest; // pushed or offered
         uint64_t frame = 0;
