@@ -65,21 +65,24 @@ void RejoinLog::overflow() {
 void RejoinLog::work() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(
-            lock, [this] { return stop_ || (!entries_.empty() && (pauses_.empty() || taken_ < *pauses_.begin())); });
+        changed_.wait(lock, [this] {
+            return stop_ || dueRequest() || (!entries_.empty() && (pauses_.empty() || taken_ < *pauses_.begin()));
+        });
         if (stop_) return;
+        if (const auto request = dueRequest()) {
+            serve(*request, lock);
+            continue;
+        }
         const Entry entry = std::move(entries_.front());
         entries_.pop_front();
         waitingBytes_ -= entry.payload.size();
         const bool wanted = complete_;
-        inHand_ = true;
         lock.unlock();
         countFrames(entry);
         if (wanted || entry.clientGone != 0) take(entry);
         const bool fits = snapshot_->serves();
         logBytes_ = snapshot_->sizeBytes();
         lock.lock();
-        inHand_ = false;
         ++taken_;
         if (entry.clientGone != 0) tooLarge_.erase(entry.clientGone);
         if (!fits && complete_) overflow();
@@ -88,6 +91,27 @@ void RejoinLog::work() {
         if (!complete_ && tooLarge_.empty()) complete_ = true;
         changed_.notify_all();
     }
+}
+
+std::shared_ptr<RejoinLog::Request> RejoinLog::dueRequest() const {
+    const auto due =
+        std::ranges::find_if(requests_, [this](const auto& r) { return r->position == taken_ && !r->hasBegun; });
+    return due == requests_.end() ? nullptr : *due;
+}
+
+// The memory of all snapshots comes from the malloc arena of this thread, so it is used again. Other threads would each
+// keep the memory of a snapshot in an arena of their own.
+void RejoinLog::serve(Request& request, std::unique_lock<std::mutex>& lock) {
+    request.hasBegun = true;
+    if (complete_) {
+        lock.unlock();
+        Snapshot made{snapshot_->snapshot(), {}, wall_};
+        for (const auto& [client, frame] : frames_) made.frames.push_back({client, frame});
+        lock.lock();
+        request.snapshot = std::move(made);
+    }
+    request.isDone = true;
+    changed_.notify_all();
 }
 
 void RejoinLog::countFrames(const Entry& entry) {
@@ -110,27 +134,19 @@ void RejoinLog::take(const Entry& entry) {
 }
 
 Result<RejoinLog::Snapshot> RejoinLog::snapshot(uint64_t position, Deadline deadline) {
+    const auto request = std::make_shared<Request>(Request{position, false, false, {}});
     std::unique_lock lock(mutex_);
-    while (!stop_ && (taken_ < position || inHand_) && !deadline.passed())
+    requests_.push_back(request);
+    changed_.notify_all();
+    while (!stop_ && !request->isDone && (request->hasBegun || !deadline.passed()))
         changed_.wait_for(lock, std::chrono::milliseconds(kSliceMs));
-    const bool there = complete_ && taken_ == position && !inHand_;
-    Result<Snapshot> result = Error{complete_ ? "its snapshot was not ready in time"
-                                              : "programs have sent more than the " + std::to_string(maxBytes_ >> 20) +
-                                                    " MiB of the rejoin log; a larger --cache-size holds more"};
-    if (there) {
-        lock.unlock(); // the thread is paused, and no other thread touches the log
-        {
-            // Locked after `lock` was released: a snapshot of a later position waits for earlier ones.
-            const std::lock_guard alone(snapshots_);
-            Snapshot snapshot{snapshot_->snapshot(), {}, wall_};
-            for (const auto& [client, frame] : frames_) snapshot.frames.push_back({client, frame});
-            result = std::move(snapshot);
-        }
-        lock.lock();
-    }
+    std::erase(requests_, request);
     pauses_.erase(pauses_.find(position));
     changed_.notify_all();
-    return result;
+    if (request->snapshot) return std::move(*request->snapshot);
+    return Error{complete_ ? "its snapshot was not ready in time"
+                           : "programs have sent more than the " + std::to_string(maxBytes_ >> 20) +
+                                 " MiB of the rejoin log; a larger --cache-size holds more"};
 }
 
 uint64_t RejoinLog::sizeBytes() const {

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <span>
 #include <thread>
@@ -43,8 +44,8 @@ public:
         std::vector<wire::ClientFrame> frames; // the last frame of each program; the frames in `packets` are not shown
         trace::WallFrames wall;                // the frames of the wall so far
     };
-    // Returns the snapshot of a held position; once per position, from any thread. Waits until the thread reaches the
-    // position. Errors: the log has overflowed; the deadline has passed.
+    // Returns the snapshot of a held position; once per pause(), from any thread. Waits until the log's thread reaches
+    // the position and makes the snapshot. Errors: the log has overflowed; the deadline has passed.
     Result<Snapshot> snapshot(uint64_t position, Deadline deadline);
 
     [[nodiscard]] bool complete() const { return complete_; } // false: the log of some program has overflowed
@@ -56,7 +57,14 @@ private:
         std::vector<std::byte> payload;
         uint32_t clientGone = 0; // nonzero: not a packet, but the end of this program
     };
+    struct Request { // of a snapshot
+        uint64_t position = 0;
+        bool hasBegun = false, isDone = false;
+        std::optional<Snapshot> snapshot; // none: the log has overflowed
+    };
     void work();
+    [[nodiscard]] std::shared_ptr<Request> dueRequest() const; // with the lock held; null: none
+    void serve(Request& request, std::unique_lock<std::mutex>& lock);
     void countFrames(const Entry& entry);
     void take(const Entry& entry);
     void overflow(); // with the lock held: discards the log of all current programs
@@ -71,17 +79,16 @@ private:
     uint64_t waitingBytes_ = 0;
     uint64_t taken_ = 0;             // number of processed entries
     std::multiset<uint64_t> pauses_; // the thread pauses at the first of these positions
-    std::set<uint32_t> programs_;    // programs that have sent packets
-    std::set<uint32_t> tooLarge_;    // programs whose log was discarded
+    std::vector<std::shared_ptr<Request>> requests_;
+    std::set<uint32_t> programs_; // programs that have sent packets
+    std::set<uint32_t> tooLarge_; // programs whose log was discarded
     std::atomic<bool> complete_{true};
     std::atomic<uint64_t> logBytes_{0};
-    bool inHand_ = false; // the thread is processing an entry
     bool stop_ = false;
 
-    std::unique_ptr<snapshot::KeptStream> snapshot_; // owned by the thread; by snapshot() while the thread is paused
-    std::map<uint32_t, uint32_t> frames_;            // the same; last frame by program
-    trace::WallFrames wall_;                         // the same; includes programs whose log was discarded
-    std::mutex snapshots_;                           // serialises snapshot()
+    std::unique_ptr<snapshot::KeptStream> snapshot_; // used by the thread only, as the next two
+    std::map<uint32_t, uint32_t> frames_;            // last frame by program
+    trace::WallFrames wall_;                         // includes programs whose log was discarded
     std::thread thread_;
 };
 
