@@ -6,6 +6,6 @@
 
 namespace mural {
 
-nlohmann::json BalancerControl::list() const { return equalizersJson(current_().totals()); }
+nlohmann::json BalancerControl::list() const { return equalizersJson(current_()->totals()); }
 
 } // namespace mural

@@ -135,8 +135,9 @@ public:
     void endAfterGoodbye(Deadline deadline);
     // Joins the reader thread and ends the process.
     void end();
-    // Frees the memory of the connection. Call after end(), while no thread sends.
+    // Frees the memory of the connection and of packets that wait. Call after end(), while no thread sends.
     void release() {
+        takeQueue();
         const std::lock_guard lock(reasonMutex_);
         connection_.reset();
         pictures_.reset();

@@ -215,7 +215,7 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
     Phase phase = Phase::Over;
     std::shared_ptr<NodeResync> over;
     std::string problem;
-    bool due = false, givesUp = false;
+    bool due = false, givesUp = false, isOver = false;
     std::shared_ptr<NodeGroup> group;
     Deadline readyBy = Deadline::never();
     {
@@ -228,9 +228,12 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
         readyBy = n.readyBy;
         group = n.group;
         givesUp = std::exchange(n.givesUp, false);
+        isOver = n.isDiscarded && !n.catchUp && set_.link(node).readerEnded();
+        if (isOver) n.isDiscarded = false;
     }
     over.reset();
     if (givesUp) hooks_.gaveUp(node);
+    if (isOver) hooks_.isOver(node);
     if (!problem.empty()) return fail(node, problem, nowNs);
     if (group && group->hasFailed() && cancels(node, phase)) return;
     switch (phase) {
@@ -299,7 +302,7 @@ void NodeRestarter::failGroup(int node, const std::string& why) {
         const std::lock_guard lock(mutex_);
         Node& n = at(node);
         n.phase = Phase::Over;
-        n.isRetired = true;
+        n.isRetired = n.isDiscarded = true;
         n.starting.reset();
         group = std::move(n.group);
     }

@@ -39,6 +39,7 @@ public:
         std::function<StreamBroadcaster::Admission(int node, uint32_t view)>
             admitted;                         // called with the lock that orders packets
         std::function<void(int node)> gaveUp; // called when the node stays lost
+        std::function<void(int node)> isOver; // called when a node of a failed group has ended
     };
 
     NodeRestarter(ReturnTerms terms, StreamBroadcaster& nodes, Hooks hooks);
@@ -101,8 +102,9 @@ private:
         Deadline readyBy = Deadline::never();
         std::unique_ptr<StartingNode> starting; // accessed by tick() only
         std::shared_ptr<NodeResync> catchUp;
-        bool givesUp = false; // tick() reports that it stays lost
-        std::string problem;  // why the last attempt failed, for tick()
+        bool givesUp = false;     // tick() reports that it stays lost
+        bool isDiscarded = false; // its group has failed; tick() reports its end
+        std::string problem;      // why the last attempt failed, for tick()
         Numbers numbers;
     };
 

@@ -98,7 +98,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
                                                         isNative() ? makeNativeStream : makeCapturedStream));
     returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
     // other displays need no pictures in any plan
-    if (plans_.current().takesPictures || config_.display == Display::Windows)
+    if (plans_.current()->takesPictures || config_.display == Display::Windows)
         output_ = std::make_unique<PictureOutput>(outputConfig(), std::move(options_.file));
 }
 
@@ -174,7 +174,7 @@ void HeadSession::tick() {
     reportProgress(nowNs);
     tickStatistics(nowNs);
     tickOverlay(nowNs);
-    balancer().tick(nowNs);
+    balancer()->tick(nowNs);
 }
 
 void HeadSession::reportProgress(int64_t nowNs) {
@@ -217,13 +217,14 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
 }
 
 Result<void> HeadSession::nodeAnswer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes) {
-    plans_.of(node).balancer.answered();
+    plans_.of(node)->balancer.answered();
     return answers_.answer(node, header, std::move(bytes));
 }
 
 Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& message) {
-    if (plans_.of(node).takesPictures) {
-        plans_.of(node).pictures.frameDone(node, message.client, message.window, message.frame);
+    const auto stage = plans_.of(node);
+    if (stage->takesPictures) {
+        stage->pictures.frameDone(node, message.client, message.window, message.frame);
         output_->waitForRoom();
     }
     {
@@ -233,16 +234,17 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // the node's Bye replaces this value
     }
-    plans_.of(node).balancer.frameDone(node, message, monotonicNowNs());
-    advice_.frameDone(message.flags, plans_.nodePlan(node).pass.ranges > 1);
+    stage->balancer.frameDone(node, message, monotonicNowNs());
+    advice_.frameDone(message.flags, stage->plan.nodes[static_cast<size_t>(node)].pass.ranges > 1);
     return recordFrame(node, message, frames_.frameDone(node, message, monotonicNowNs()));
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
-    if (!plans_.of(node).takesPictures) return Error{"it sent a picture that was not requested"};
-    auto placed = placeOnWall(plans_.nodePlan(node), header, std::move(rows));
-    auto done = placed ? plans_.of(node).pictures.part(node, placed->header, std::move(placed->rows))
-                       : Result<void>(placed.error());
+    const auto stage = plans_.of(node);
+    if (!stage->takesPictures) return Error{"it sent a picture that was not requested"};
+    auto placed = placeOnWall(stage->plan.nodes[static_cast<size_t>(node)], header, std::move(rows));
+    auto done =
+        placed ? stage->pictures.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
     output_->waitForRoom();
     return done;
 }
@@ -421,14 +423,15 @@ SessionStatus HeadSession::status() {
     result.runPid = getppid();
     result.headPid = getpid();
     result.nowNs = monotonicNowNs();
-    result.columns = plans_.current().config.columns;
-    result.rows = plans_.current().config.rows;
+    const auto stage = plans_.current();
+    result.columns = stage->config.columns;
+    result.rows = stage->config.rows;
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.latency = programs_->latency();
     result.recording = recording_.status();
     result.delta = nodes_.deltaCounts();
-    result.equalizers = balancer().totals();
+    result.equalizers = balancer()->totals();
     result.programs = programs_->status();
     for (ProgramStatus& program : result.programs) {
         program.progress = frames_.progressOf(program.id);
@@ -443,7 +446,7 @@ SessionStatus HeadSession::status() {
                         facts_[i].pid,
                         facts_[i].renderer,
                         0,
-                        streamOf(plans_.nodePlan(static_cast<int>(i)))};
+                        streamOf(*plans_.nodePlan(static_cast<int>(i)))};
         node.totals.frames = frames_.framesOf(node.totals.node);
         node.totals.pictureBytes = link.pictureBytes(); // the node's Bye holds the other numbers
         node.totals.pictureRawBytes = link.pictureRawBytes();
@@ -460,7 +463,7 @@ SessionNumbers HeadSession::numbers() {
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
     result.delta = nodes_.deltaCounts();
-    result.equalizers = balancer().totals();
+    result.equalizers = stage->balancer.totals();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = advice_.drawnWhole();

@@ -100,7 +100,7 @@ private:
     struct PendingChange {
         SessionConfig config;
         PlanChange change;
-        SessionStage* stage = nullptr;
+        std::shared_ptr<SessionStage> stage;
         std::shared_ptr<NodeGroup> group;  // null: no node joins
         std::atomic<bool> hasBegun{false}; // the session's thread starts the new nodes
     };
@@ -178,6 +178,7 @@ private:
     void endLeftNodes(int64_t nowNs);
     void checkForNodes();
     void addStopOperations(ControlOperations& operations);
+    void forgetNode(int node);
     bool hasOtherMembers(int node);
     Result<void> stopNode(int node, bool isForced);
     Result<void> handOver(int node, Deadline deadline); // to the nodes that take its area
@@ -185,8 +186,14 @@ private:
     void memberLeft(int node);
     Result<void> startNode(int node);
     [[nodiscard]] int nodeCount() const { return plans_.nodeCount(); }
-    [[nodiscard]] const SessionPlan& currentPlan() const { return plans_.current().plan; }
-    [[nodiscard]] LoadBalancer& balancer() const { return plans_.current().balancer; }
+    [[nodiscard]] std::shared_ptr<const SessionPlan> currentPlan() const {
+        const auto stage = plans_.current();
+        return {stage, &stage->plan};
+    }
+    [[nodiscard]] std::shared_ptr<LoadBalancer> balancer() const {
+        const auto stage = plans_.current();
+        return {stage, &stage->balancer};
+    }
     // Returns an operation that changes a node. canForce: it has the argument `force`.
     ControlOperation nodeOperation(std::string name, std::string meaning, bool canForce,
                                    std::function<Result<void>(int node, bool isForced)> change);
@@ -250,10 +257,10 @@ private:
     SentFrames sentFrames_;    // for equalizers of zooms
     std::mutex announceMutex_; // orders announcements of the statistics' state and of the overlay; guards overlayMode_
                                // and overlayOfNodes_
-    const std::shared_ptr<Overlay> overlay_;       // of the head's windows
-    OverlayMode overlayMode_ = OverlayMode::Off;   // of all windows except these:
-    std::map<int, OverlayMode> overlayOfNodes_;    // of the windows of single nodes
-    const SessionPlan* overlayPlan_ = nullptr;     // the plan of overlayNumbers_
+    const std::shared_ptr<Overlay> overlay_;         // of the head's windows
+    OverlayMode overlayMode_ = OverlayMode::Off;     // of all windows except these:
+    std::map<int, OverlayMode> overlayOfNodes_;      // of the windows of single nodes
+    std::shared_ptr<const SessionPlan> overlayPlan_; // the plan of overlayNumbers_
     std::optional<OverlayNumbers> overlayNumbers_; // while the head's windows show statistics; used by the main thread
     int64_t overlayNumbersNs_ = 0;                 // the latest numbers
     int64_t probedNs_ = 0;                         // the latest ClockProbe
@@ -263,7 +270,7 @@ private:
     DriverEventMerger driverEvents_;
     std::unique_ptr<PictureOutput> output_; // null: the head receives no pictures
     PlanSequence plans_;
-    BalancerControl equalizers_{[this]() -> LoadBalancer& { return plans_.current().balancer; }};
+    BalancerControl equalizers_{[this] { return balancer(); }};
     SlowdownAdvice advice_;
     StreamBroadcaster nodes_;
     SessionRecording recording_{nodes_};
@@ -282,11 +289,10 @@ private:
     std::atomic<bool> isMovingToSpare_{false};
     std::atomic<int> lostAfterMove_{-1}; // node whose move to a spare host failed; -1: none
     std::atomic<bool> wallLost_{false};
-    std::atomic<bool> checksForNodes_{false};             // tick() checks whether any node is left
-    std::mutex changing_;                                 // held during a change of the plan
-    std::vector<std::shared_ptr<PendingChange>> changed_; // guarded by mutex_; their groups refer to them
-    std::shared_ptr<PendingChange> pending_;              // guarded by mutex_; for the session's thread to begin
-    std::deque<SessionConfig> history_;   // guarded by mutex_; configurations before the changes, the latest last
+    std::atomic<bool> checksForNodes_{false}; // tick() checks whether any node is left
+    std::mutex changing_;                     // held during a change of the plan
+    std::shared_ptr<PendingChange> pending_;  // guarded by mutex_; for the session's thread to begin
+    std::deque<SessionConfig> history_;       // guarded by mutex_; configurations before the changes, the latest last
     std::set<int> newNodes_;              // guarded by mutex_; come with a change of the plan, and were no members yet
     std::map<int, int64_t> leavingSince_; // guarded by mutex_; nodes of earlier plans, since their Leave
     const std::map<int, std::string> absences_; // nodes absent at the start, with the reason

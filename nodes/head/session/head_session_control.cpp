@@ -117,8 +117,8 @@ Result<void> HeadSession::checkNode(int64_t node) {
     if (node < 0 || node >= nodeCount())
         return Error{"the session has no node " + std::to_string(node) + "; its nodes are 0 to " +
                      std::to_string(nodeCount() - 1)};
-    const std::vector<NodePlan>& nodes = currentPlan().nodes; // without those of a change in progress
-    if (static_cast<size_t>(node) >= nodes.size() || nodes[static_cast<size_t>(node)].isVacant)
+    const auto plan = currentPlan(); // without the nodes of a change in progress
+    if (static_cast<size_t>(node) >= plan->nodes.size() || plan->nodes[static_cast<size_t>(node)].isVacant)
         return Error{"node " + std::to_string(node) + " is no node of the current plan; see mural ctl nodes"};
     if (finishing_) return Error{"the session is ending; its nodes end with it"};
     return {};
@@ -137,8 +137,8 @@ Result<void> HeadSession::removeNode(int node, bool isForced) {
     const std::string subject = link.describe() + " cannot be removed: ";
     if (!hasOtherMembers(node))
         return Error{subject + "it is the only node that draws at the moment; end the session with mural ctl stop"};
-    const NodePlan& plan = plans_.nodePlan(node);
-    const bool isReplaced = plan.movesArea || plan.movesRange;
+    const auto plan = plans_.nodePlan(node);
+    const bool isReplaced = plan->movesArea || plan->movesRange;
     if (!isReplaced && !isForced)
         return Error{subject + "no other node takes its part of the picture; add force, or use --balance"};
     if (const auto retired = returns_->retire(node); !retired) return Error{subject + retired.error().message};

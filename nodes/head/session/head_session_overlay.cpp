@@ -68,7 +68,8 @@ OverlayMode HeadSession::overlayOf(int node) const {
 Json HeadSession::overlayJson() {
     const std::lock_guard lock(announceMutex_);
     Json nodes = Json::array();
-    for (const NodePlan& node : currentPlan().nodes)
+    const auto plan = currentPlan();
+    for (const NodePlan& node : plan->nodes)
         if (!node.isVacant) nodes.push_back({{"node", node.node}, {"overlay", nameOf(overlayOf(node.node))}});
     return {{"overlay", nameOf(overlayMode_)}, {"nodes", std::move(nodes)}};
 }
@@ -93,20 +94,21 @@ void HeadSession::tickOverlay(int64_t nowNs) {
     overlayNumbersNs_ = nowNs;
     if (!showsStatistics()) {
         overlayNumbers_.reset();
+        overlayPlan_.reset();
         return;
     }
     if (statistics_.request(nowNs)) announceStatistics();
     if (overlay_->mode() != OverlayMode::Stats) return;
-    const SessionPlan& plan = currentPlan();
-    if (!overlayNumbers_ || overlayPlan_ != &plan) {
+    const auto plan = currentPlan();
+    if (!overlayNumbers_ || overlayPlan_ != plan) {
         const std::string host = overlay_->content().host;
         std::map<int, std::string> names;
-        for (const NodePlan& node : plan.nodes)
+        for (const NodePlan& node : plan->nodes)
             if (!node.isVacant)
                 names[node.node] = "node " + std::to_string(node.node) + " on " +
                                    (node.reach == NodeReach::SharedMemory && !host.empty() ? host : node.where);
         overlayNumbers_.emplace(names);
-        overlayPlan_ = &plan;
+        overlayPlan_ = plan;
     }
     overlayNumbers_->add(statistics_.since(overlayNumbers_->next(), nowNs));
     overlay_->setNodes(overlayNumbers_->nodes());

@@ -82,8 +82,9 @@ void HeadSession::addPlanOperations(ControlOperations& operations) {
                      {"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
                     [this](const Json& arguments) -> Result<Json> {
                         const auto options = arguments.find("options");
-                        if (options == arguments.end()) return Json{{"options", planFieldsOf(plans_.current().config)}};
-                        auto config = withPlanFields(plans_.current().config, *options);
+                        if (options == arguments.end())
+                            return Json{{"options", planFieldsOf(plans_.current()->config)}};
+                        auto config = withPlanFields(plans_.current()->config, *options);
                         if (!config) return config.error();
                         return changePlan(std::move(*config), arguments.value("dry-run", false));
                     }});
@@ -105,14 +106,14 @@ void HeadSession::addPlanOperations(ControlOperations& operations) {
 }
 
 Result<Json> HeadSession::moveNodes(const std::string& from, const std::string& to, bool isDryRun) {
-    const std::vector<NodePlan>& nodes = currentPlan().nodes;
-    const bool isKnown = from != "local" && std::ranges::any_of(nodes, [&](const NodePlan& node) {
+    const auto stage = plans_.current();
+    const bool isKnown = from != "local" && std::ranges::any_of(stage->plan.nodes, [&](const NodePlan& node) {
                              return !node.isVacant && node.where == from;
                          });
     if (!isKnown) return Error{"no node of the session runs on the host \"" + from + "\"; see mural ctl nodes"};
     if (to.empty() || to.find_first_of("= \t") != std::string::npos || to.front() == '-')
         return Error{"\"" + to + "\" is no name of a host"};
-    SessionConfig config = plans_.current().config;
+    SessionConfig config = stage->config;
     config.movedHosts.push_back(from + "=" + to);
     return changePlan(std::move(config), isDryRun);
 }
@@ -120,7 +121,7 @@ Result<Json> HeadSession::moveNodes(const std::string& from, const std::string& 
 // Called by the session's thread when a node stays lost. The move runs in a thread of its own, because it waits for
 // this one.
 void HeadSession::takeSpareFor(int node) {
-    const std::string from = plans_.nodePlan(node).where;
+    const std::string from = plans_.nodePlan(node)->where;
     const bool isBack = nodes_.link(node).alive() || returns_->isRestarting(node);
     if (spares_.empty() || from == "local" || finishing_ || isBack || hasLeft(node)) return;
     if (spareMove_.joinable()) {
@@ -165,14 +166,14 @@ Result<Json> HeadSession::undoChange(bool isDryRun) {
 }
 
 Result<Json> HeadSession::changeLayout(const Json& arguments) {
-    const SessionStage& stage = plans_.current();
-    if (stage.config.configFile.empty() || !stage.plan.balance)
+    const auto stage = plans_.current();
+    if (stage->config.configFile.empty() || !stage->plan.balance)
         return Error{"this session has no canvases with layouts; start it with --config"};
     const std::string canvas = arguments.value("canvas", ""), layout = arguments.value("layout", "");
-    if (canvas.empty() && layout.empty()) return Json{{"canvases", canvasesJson(*stage.plan.balance)}};
+    if (canvas.empty() && layout.empty()) return Json{{"canvases", canvasesJson(*stage->plan.balance)}};
     if (canvas.empty() || layout.empty())
         return Error{"a layout is shown on a canvas; name both, such as mural ctl layout wall 2D"};
-    SessionConfig config = stage.config;
+    SessionConfig config = stage->config;
     std::erase_if(config.layouts, [&](const std::string& other) { return other.starts_with(canvas + ":"); });
     config.layouts.push_back(canvas + ":" + layout);
     return changePlan(std::move(config), arguments.value("dry-run", false));
@@ -193,9 +194,9 @@ Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
     auto wanted = makePlan(config, host);
     if (!wanted) return wanted.error();
     const auto difference = [&] {
-        const SessionStage& stage = plans_.current();
+        const auto stage = plans_.current();
         return changeOf(
-            {stage.config, stage.plan, plans_.outputs()}, config, *wanted,
+            {stage->config, stage->plan, plans_.outputs()}, config, *wanted,
             [this](int node) { return nodes_.link(node).alive() && !returns_->isRestarting(node); }, nodeCount());
     };
     auto change = difference();
@@ -211,7 +212,7 @@ Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
     if (!change->joining.empty()) {
         if (const auto can = canTakeNodes(members); !can) return can.error();
     }
-    SessionConfig before = plans_.current().config;
+    SessionConfig before = plans_.current()->config;
     const bool skips = returns_->skipsFrames();
     Result<void> done = carryOut(config, *change);
     if (!done && returns_->skipsFrames() != skips) { // the frames of the new nodes depended on skipped ones
@@ -229,7 +230,8 @@ Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
         if (history_.size() > kMaxHistory) history_.pop_front();
     }
     int turns = 1;
-    for (const NodePlan& node : currentPlan().nodes) turns = std::max(turns, node.pass.period);
+    const auto plan = currentPlan();
+    for (const NodePlan& node : plan->nodes) turns = std::max(turns, node.pass.period);
     if (programs_->latency() < static_cast<uint32_t>(turns))
         programs_->setLatency(static_cast<uint32_t>(turns)); // so that the turns overlap
     Json result = nodesJson();
@@ -306,10 +308,12 @@ void HeadSession::beginPlanChange() {
     frames_.addNodes(count);
     std::shared_ptr<NodeGroup> group;
     if (count > 0)
-        group = std::make_shared<NodeGroup>(change.joining,
-                                            [this, change = pending.get()] { return exchangeNodes(*change); });
+        group = std::make_shared<NodeGroup>(change.joining, [this, changeOfGroup = std::weak_ptr(pending)] {
+            const auto held = changeOfGroup.lock(); // carryOut() keeps it until the outcome, or the session ends
+            return held ? exchangeNodes(*held) : Result<void>(Error{"the session is ending"});
+        });
     if (group) returns_->addGroup(group);
-    pending->stage = &plans_.prepare(pending->config, change.plan);
+    pending->stage = plans_.prepare(pending->config, change.plan);
     if (nodes_.multicast() != nullptr)
         for (const int node : nodesForMulticast(pending->config.stream, change.plan)) multicastNodes_.insert(node);
     if (nodes_.hasDeltaStream()) {
@@ -332,7 +336,6 @@ void HeadSession::beginPlanChange() {
         newNodes_.insert(node);
     }
     views_.addNodes(count);
-    changed_.push_back(pending); // the group refers to it
     pending->group = std::move(group);
     pending->hasBegun = true;
 }
@@ -363,7 +366,7 @@ Result<void> HeadSession::exchangeNodes(PendingChange& pending) {
             }
         }
         exchange.leaving = draining;
-        plans_.change(*pending.stage, std::move(kept), draining, view);
+        plans_.change(pending.stage, std::move(kept), draining, view);
         pacer_.endPaces(); // of the earlier plan's equalizers
         sentFrames_.areWanted = pending.stage->balancer.movesZooms();
         if (std::ranges::any_of(change.plan.nodes, followsAssignments))
@@ -399,14 +402,25 @@ void HeadSession::endLeftNodes(int64_t nowNs) {
             continue;
         }
         link.endAfterGoodbye(Deadline::inMs(kProcessEndMs));
-        nodes_.retire(node);
-        {
-            const std::lock_guard lock(announceMutex_);
-            overlayOfNodes_.erase(node);
-        }
+        forgetNode(node);
         const std::lock_guard lock(mutex_);
         leavingSince_.erase(node);
     }
+}
+
+// Frees what a node has used that never joined or has left for good. Its number is not used again. Called by the
+// session's thread, after the node's reader has ended.
+void HeadSession::forgetNode(int node) {
+    nodes_.retire(node);
+    multicastNodes_.erase(node);
+    deltaNodes_.erase(node);
+    {
+        const std::lock_guard lock(announceMutex_);
+        overlayOfNodes_.erase(node);
+    }
+    const std::lock_guard lock(mutex_);
+    newNodes_.erase(node);
+    std::vector<std::string>().swap(facts_[static_cast<size_t>(node)].extensions); // the largest part
 }
 
 // Called by the session's thread. A thread that exchanges nodes holds the lock while it waits for connections, and this
@@ -420,8 +434,9 @@ void HeadSession::checkForNodes() {
 }
 
 bool HeadSession::hasLeft(int node) {
-    const std::vector<NodePlan>& nodes = currentPlan().nodes;
-    const bool isPlanned = static_cast<size_t>(node) < nodes.size() && !nodes[static_cast<size_t>(node)].isVacant;
+    const auto plan = currentPlan();
+    const auto index = static_cast<size_t>(node);
+    const bool isPlanned = index < plan->nodes.size() && !plan->nodes[index].isVacant;
     return !isPlanned && !nodes_.link(node).alive();
 }
 

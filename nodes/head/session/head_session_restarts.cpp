@@ -30,7 +30,7 @@ std::string seconds(double value) {
 
 NodeRestarter::Hooks HeadSession::returnHooks() {
     NodeRestarter::Hooks hooks;
-    if (options_.startNode) hooks.start = [this](int node) { return options_.startNode(plans_.nodePlan(node)); };
+    if (options_.startNode) hooks.start = [this](int node) { return options_.startNode(*plans_.nodePlan(node)); };
     hooks.connected = [this](int node, StartingNode& starting) { linkAgain(node, starting); };
     hooks.introduce = [this](int node) { introduceAgain(node); };
     hooks.whyNever = [this](int) -> std::string {
@@ -41,17 +41,18 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
     };
     // Only members know the state of time-multiplexed nodes, moving areas and zooms.
     hooks.turns = [this](int node) {
-        const NodePlan& plan = plans_.nodePlan(node);
-        return plan.pass.period > 1       ? StreamBroadcaster::Turns::OfFrames
-               : followsAssignments(plan) ? StreamBroadcaster::Turns::OfAreas
-                                          : StreamBroadcaster::Turns::None;
+        const auto plan = plans_.nodePlan(node);
+        return plan->pass.period > 1       ? StreamBroadcaster::Turns::OfFrames
+               : followsAssignments(*plan) ? StreamBroadcaster::Turns::OfAreas
+                                           : StreamBroadcaster::Turns::None;
     };
     hooks.tilesOfLost = [this](int node) -> std::string {
-        const NodePlan& plan = plans_.nodePlan(node);
-        if (plan.pass.range > 0) return plan.movesRange ? "other nodes take its draws" : "its draws are missing";
-        return plan.movesArea ? "other nodes take its tiles" : "its tiles keep their last picture";
+        const auto plan = plans_.nodePlan(node);
+        if (plan->pass.range > 0) return plan->movesRange ? "other nodes take its draws" : "its draws are missing";
+        return plan->movesArea ? "other nodes take its tiles" : "its tiles keep their last picture";
     };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
+    hooks.isOver = [this](int node) { forgetNode(node); };
     hooks.gaveUp = [this](int node) {
         takeSpareFor(node);
         checkForNodes();
@@ -72,16 +73,16 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
         statistics_.forgetClock(node);
         isNewNode = isNew(node);
     }
-    const NodePlan& plan = plans_.nodePlan(node);
+    const auto plan = plans_.nodePlan(node);
     NodeEvents& events = *this; // a private base: make_unique could not convert
-    auto link = std::make_unique<NodeConnection>(NodeLocation{node, plan.where}, std::move(starting.node.connection),
+    auto link = std::make_unique<NodeConnection>(NodeLocation{node, plan->where}, std::move(starting.node.connection),
                                                  std::move(starting.node.process), events);
     link->setJoinsBatches(deltaNodes_.contains(node));
     link->setJoinsGroup(multicastNodes_.contains(node));
     nodes_.replace(node, std::move(link));
-    nodes_.link(node).unpackBy(plan.pictureCodec, plan.transferScale);
+    nodes_.link(node).unpackBy(plan->pictureCodec, plan->transferScale);
     nodes_.link(node).startReading();
-    NodeSetup setup = setupFor(plan);
+    NodeSetup setup = setupFor(*plan);
     setup.isResyncing = true;
     setup.incarnation = incarnation;
     if (!isNewNode) setup.swapMembers = 0; // the other members of its swap barrier continue without it
@@ -93,9 +94,9 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
 // The restarted node connects to the other nodes of its picture: to members, and among restarted nodes to those
 // introduced earlier. The other nodes accept the connection without further notice.
 void HeadSession::introduceAgain(int node) {
-    const NodePlan& plan = plans_.nodePlan(node);
-    const SessionStage& stage = plans_.of(node);
-    const auto barrier = swapMembersOf(stage.config, stage.plan, plan);
+    const auto stage = plans_.of(node);
+    const NodePlan& plan = stage->plan.nodes[static_cast<size_t>(node)];
+    const auto barrier = swapMembersOf(stage->config, stage->plan, plan);
     nlohmann::json pictures = nlohmann::json::object(), swaps = nlohmann::json::object();
     {
         const std::lock_guard lock(mutex_);
@@ -156,11 +157,13 @@ StreamBroadcaster::Admission HeadSession::admission(int node, uint32_t view) {
     views_.joins(node, view);
     admission.incarnation = incarnations_[static_cast<size_t>(node)];
     admission.first = true; // of time-multiplexed nodes or nodes with moving areas
-    for (size_t other = 0; other < currentPlan().nodes.size(); ++other)
-        admission.first = admission.first && (totals_[other].lost || (currentPlan().nodes[other].pass.period < 2 &&
-                                                                      !followsAssignments(currentPlan().nodes[other])));
+    const auto plan = currentPlan();
+    for (size_t other = 0; other < plan->nodes.size(); ++other)
+        admission.first =
+            admission.first &&
+            (totals_[other].lost || (plan->nodes[other].pass.period < 2 && !followsAssignments(plan->nodes[other])));
     totals_[static_cast<size_t>(node)].lost = false;
-    for (size_t other = 0; other < currentPlan().nodes.size(); ++other)
+    for (size_t other = 0; other < plan->nodes.size(); ++other)
         if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive())
             admission.absent.push_back(static_cast<uint32_t>(other));
     return admission;
@@ -188,7 +191,7 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     const NodeRestarter::Numbers numbers = returns_->numbers(node);
     frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // plus the frames that it has drawn itself
     frames_.nodeJoined(node, frames, monotonicNowNs());
-    plans_.of(node).balancer.nodeJoined(node);
+    plans_.of(node)->balancer.nodeJoined(node);
     if (statistics_.isOn()) announceStatistics(); // its Setup may be older than the request
     announceOverlay();                            // the same
     int64_t joins = 0;
@@ -230,7 +233,7 @@ void HeadSession::loseMember(int node, const std::string& why) {
 void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
-        const bool taken = plans_.nodePlan(node).movesArea;
+        const bool taken = plans_.nodePlan(node)->movesArea;
         log::warning(log::Topic::Node, nodes_.link(node).describe(), " is not connected yet: it ", why,
                      taken ? "; other nodes take its tiles until it joins" : "; its tiles stay empty until it joins");
         returns_->notThere(node);

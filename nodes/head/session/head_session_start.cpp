@@ -47,21 +47,21 @@ Result<void> HeadSession::bringUp() {
     log::debug(log::Topic::Session, "session ", config_.session, " begins with ", nodeCount(), " nodes, wall ",
                config_.columns, "x", config_.rows, ", display ", nameOf(config_.display));
     placement_ = placeOwnThreads(); // before its threads start, because they inherit the placement
-    for (const NodePlan& node : currentPlan().nodes)
-        nodes_.link(node.node).unpackBy(node.pictureCodec, node.transferScale);
+    const auto plan = currentPlan();
+    for (const NodePlan& node : plan->nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.transferScale);
     nodes_.startReading();
     openMulticast();
     if (auto opened = openDeltaStream(); !opened) return opened;
-    if (std::ranges::any_of(currentPlan().nodes, [this](const NodePlan& n) {
-            return n.pass.ranges > 1 || !swapMembersOf(config_, currentPlan(), n).empty();
+    if (std::ranges::any_of(plan->nodes, [&](const NodePlan& n) {
+            return n.pass.ranges > 1 || !swapMembersOf(config_, *plan, n).empty();
         })) {
         const auto secret = makeSessionSecret();
         if (!secret) return secret.error();
         exchangeSecret_ = toHex(secret.value());
     }
-    for (const NodePlan& plan : currentPlan().nodes)
-        if (nodes_.link(plan.node).alive())
-            nodes_.sendAlone(plan.node, wire::HeadCommand::Setup, toJson(setupFor(plan)));
+    for (const NodePlan& node : plan->nodes)
+        if (nodes_.link(node.node).alive())
+            nodes_.sendAlone(node.node, wire::HeadCommand::Setup, toJson(setupFor(node)));
     if (auto ready = awaitReady(); !ready) return ready;
     introduceNodes();
     measureClocks();
@@ -77,33 +77,32 @@ Result<void> HeadSession::bringUp() {
 }
 
 PictureOutputConfig HeadSession::outputConfig() {
+    const auto plan = currentPlan();
     PictureOutputConfig output;
     output.saveFrames = config_.saveFrames;
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
-    output.pairs = currentPlan().wall.stereo == StereoMode::Quad;
+    output.pairs = plan->wall.stereo == StereoMode::Quad;
     output.statistics = &statistics_;
     output.overlay = overlay_;
     if (config_.overlayInFiles) {
         output.overlayInFiles.emplace();
-        output.overlayInFiles->wallWidthMm = currentPlan().size.width;
-        output.overlayInFiles->wallHeightMm = currentPlan().size.height;
+        output.overlayInFiles->wallWidthMm = plan->size.width;
+        output.overlayInFiles->wallHeightMm = plan->size.height;
     }
     output.beginOverlay = [this](uint32_t client) { return programs_->beginOverlay(client); };
     output.endOverlay = [this](uint32_t client) { programs_->endOverlay(client); };
     output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
     if (config_.display == Display::Windows)
-        output.openWall = [this] { return options_.openWall({0, currentPlan().size}); };
-    for (size_t i = 0; i < currentPlan().canvases.size(); ++i) {
+        output.openWall = [this] { return options_.openWall({0, currentPlan()->size}); };
+    for (size_t i = 0; i < plan->canvases.size(); ++i) {
+        const CanvasPlan& other = plan->canvases[i];
         OtherCanvas& canvas = output.canvases.emplace_back();
-        canvas.name = currentPlan().canvases[i].name;
-        canvas.pairs = currentPlan().canvases[i].wall.stereo == StereoMode::Quad;
+        canvas.name = other.name;
+        canvas.pairs = other.wall.stereo == StereoMode::Quad;
         if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
-        if (headShowsCanvas(config_, currentPlan().canvases[i]))
-            canvas.openWall = [this,
-                               place = WallPlace{currentPlan().canvases[i].offsetX, currentPlan().canvases[i].size}] {
-                return options_.openWall(place);
-            };
+        if (headShowsCanvas(config_, other))
+            canvas.openWall = [this, place = WallPlace{other.offsetX, other.size}] { return options_.openWall(place); };
     }
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
     output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
@@ -117,8 +116,8 @@ PictureOutputConfig HeadSession::outputConfig() {
 }
 
 NodeSetup HeadSession::setupFor(const NodePlan& plan) {
-    const SessionStage& stage = plans_.of(plan.node);
-    NodeSetup setup = setupOf(stage.config, stage.plan, plan);
+    const auto stage = plans_.of(plan.node);
+    NodeSetup setup = setupOf(stage->config, stage->plan, plan);
     setup.exchangeSecret = exchangeSecret_;
     if (nodes_.link(plan.node).byMulticast() || nodes_.link(plan.node).joinsGroup()) {
         setup.stream = nodes_.multicast()->invitation();
@@ -136,7 +135,7 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
 
 // Opens one stream for all nodes of other machines. Without it each node has its own connection.
 void HeadSession::openMulticast() {
-    std::vector<int> nodes = nodesForMulticast(config_.stream, currentPlan());
+    std::vector<int> nodes = nodesForMulticast(config_.stream, *currentPlan());
     multicastNodes_.insert(nodes.begin(), nodes.end());
     std::erase_if(nodes, [this](int node) { return absences_.contains(node); });
     if (nodes.empty()) {
@@ -167,7 +166,7 @@ void HeadSession::openMulticast() {
 
 Result<void> HeadSession::openDeltaStream() {
     const DeltaPlan plan =
-        planDelta(config_, currentPlan(), [this](int node) { return nodes_.link(node).byMulticast(); });
+        planDelta(config_, *currentPlan(), [this](int node) { return nodes_.link(node).byMulticast(); });
     deltaLine_ = plan.explain;
     log::debug(log::Topic::Stream, deltaLine_);
     if (plan.nodes.empty()) return {};
@@ -246,7 +245,7 @@ void HeadSession::openTables() {
     welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
     // A recording must play on any number of nodes. The program therefore fetches the pixels that it copies from a
     // window, as it does with several nodes. So do programs of a session that may get more nodes.
-    const bool mayGrow = options_.recorder || hasOtherLayouts(currentPlan());
+    const bool mayGrow = options_.recorder || hasOtherLayouts(*currentPlan());
     welcome.nodeCount = static_cast<uint32_t>(mayGrow ? std::max(nodeCount(), 2) : nodeCount());
     fetchesCopies_ = welcome.nodeCount > 1;
     welcome.displayApp = config_.display == Display::App ? 1 : 0;
@@ -267,8 +266,8 @@ void HeadSession::openTables() {
     terms.latency = static_cast<uint32_t>(config_.latency);
     terms.chunkCount = options_.chunkCount;
     terms.statistics = &statistics_;
-    sentFrames_.areWanted = balancer().movesZooms();
-    sentFrames_.add = [this](const SentFrame& frame) { balancer().frameSent(frame); };
+    sentFrames_.areWanted = balancer()->movesZooms();
+    sentFrames_.add = [this](const SentFrame& frame) { balancer()->frameSent(frame); };
     terms.sentFrames = &sentFrames_;
     if (options_.recorder) recording_.beginAtStart(std::move(options_.recorder), aboutTrace());
     ProgramTable::Events events;
@@ -306,9 +305,10 @@ std::string HeadSession::placeOwnThreads() const {
 }
 
 std::vector<std::string> HeadSession::explainLines() {
-    std::vector<std::string> lines = currentPlan().explain;
-    for (const NodePlan& node : currentPlan().nodes)
-        if (const auto members = swapMembersOf(config_, currentPlan(), node);
+    const auto plan = currentPlan();
+    std::vector<std::string> lines = plan->explain;
+    for (const NodePlan& node : plan->nodes)
+        if (const auto members = swapMembersOf(config_, *plan, node);
             !members.empty() && members.front()->node == node.node)
             lines.push_back("windows of " + std::to_string(members.size()) +
                             " nodes show each frame together: swap barrier \"" + node.swapBarrier +
@@ -318,26 +318,26 @@ std::vector<std::string> HeadSession::explainLines() {
     lines.push_back(deltaLine_);
     lines.push_back("threads of the head: " + placement_);
     const std::lock_guard lock(mutex_);
-    for (const NodePlan& plan : currentPlan().nodes) {
-        const std::string& placement = facts_[static_cast<size_t>(plan.node)].placement;
-        if (!placement.empty()) lines.push_back("thread of node " + std::to_string(plan.node) + ": " + placement);
+    for (const NodePlan& node : plan->nodes) {
+        const std::string& placement = facts_[static_cast<size_t>(node.node)].placement;
+        if (!placement.empty()) lines.push_back("thread of node " + std::to_string(node.node) + ": " + placement);
     }
     return lines;
 }
 
 void HeadSession::announceReady() {
+    const auto stage = plans_.current();
     Json nodes = Json::array();
     {
         const std::lock_guard lock(mutex_);
-        for (const NodePlan& plan : currentPlan().nodes) {
+        for (const NodePlan& plan : stage->plan.nodes) {
             if (absences_.contains(plan.node)) continue;
             const NodeCapabilities& facts = facts_[static_cast<size_t>(plan.node)];
             nodes.push_back({{"node", plan.node}, {"where", plan.where}, {"pid", facts.pid}, {"gl", facts.renderer}});
         }
     }
-    for (const std::string& warning : currentPlan().warnings) log::warning(log::Topic::Session, warning);
-    if (currentPlan().wall.stereo == StereoMode::Quad && plans_.current().takesPictures &&
-        !plans_.current().ownsWallWindows)
+    for (const std::string& warning : stage->plan.warnings) log::warning(log::Topic::Session, warning);
+    if (stage->plan.wall.stereo == StereoMode::Quad && stage->takesPictures && !stage->ownsWallWindows)
         log::warning(log::Topic::Session,
                      "both eyes are shown side by side, because only wall windows have a buffer for each eye; add "
                      "--display windows");

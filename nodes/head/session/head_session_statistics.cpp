@@ -63,7 +63,8 @@ void HeadSession::tickStatistics(int64_t nowNs) {
     if (statistics_.expire(nowNs)) announceStatistics();
     if (!statistics_.isOn() || nowNs - probedNs_ < kProbeNs) return;
     probedNs_ = nowNs;
-    if (std::ranges::any_of(currentPlan().nodes, [](const NodePlan& n) { return n.reach != NodeReach::SharedMemory; }))
+    const auto plan = currentPlan();
+    if (std::ranges::any_of(plan->nodes, [](const NodePlan& n) { return n.reach != NodeReach::SharedMemory; }))
         nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ClockProbe, bytesOf(nowNs));
 }
 

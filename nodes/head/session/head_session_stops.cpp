@@ -40,27 +40,27 @@ Result<void> HeadSession::stopNode(int node, bool isForced) {
     const std::string subject = nodes_.link(node).describe() + " cannot be stopped: ";
     if (!hasOtherMembers(node))
         return Error{subject + "it is the only node that draws at the moment; end the session with mural ctl stop"};
-    const NodePlan& plan = plans_.nodePlan(node);
-    if (plan.pass.ranges > 1 && !isForced)
+    const auto plan = plans_.nodePlan(node);
+    if (plan->pass.ranges > 1 && !isForced)
         return Error{subject + "the nodes of its picture share the draws, and frames in progress would lack its range; "
                                "add force"};
-    if (!plan.movesArea && !isForced)
+    if (!plan->movesArea && !isForced)
         return Error{subject + "no other node takes its part of the picture; add force, or use --balance"};
     if (const auto leaves = returns_->leave(node); !leaves) return Error{subject + leaves.error().message};
     Result<void> done;
-    if (plan.movesArea) done = handOver(node, Deadline::inMs(kHandOverMs));
+    if (plan->movesArea) done = handOver(node, Deadline::inMs(kHandOverMs));
     if (done || isForced) done = leaveAt(node, Deadline::inMs(kLeaveMs));
     if (done) return {};
     if (nodes_.link(node).alive()) { // otherwise its loss has the same effect as the stop
         returns_->stay(node);
-        balancer().takeBack(node);
+        balancer()->takeBack(node);
     }
     return Error{subject + done.error().message};
 }
 
 Result<void> HeadSession::handOver(int node, Deadline deadline) {
-    if (auto given = balancer().giveUp(node); !given) return given;
-    while (!balancer().hasGivenUp(node)) {
+    if (auto given = balancer()->giveUp(node); !given) return given;
+    while (!balancer()->hasGivenUp(node)) {
         if (!nodes_.link(node).alive())
             return Error{"it was lost meanwhile; mural ctl start-node " + std::to_string(node) + " starts it again"};
         if (deadline.passed())

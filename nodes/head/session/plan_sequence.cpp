@@ -73,54 +73,72 @@ SessionStage::SessionStage(SessionConfig sessionConfig, SessionPlan sessionPlan,
 
 PlanSequence::PlanSequence(SessionConfig config, SessionPlan plan, Hooks hooks)
     : hooks_(std::move(hooks)), outputs_(plan) {
-    SessionStage& first = addStage(std::move(config), std::move(plan));
-    entries_.push_back({&first, {}, {}, false});
-    current_ = &first;
+    current_ = addStage(std::move(config), std::move(plan));
+    entries_.push_back({current_, {}, {}, false});
 }
 
-SessionStage& PlanSequence::addStage(SessionConfig config, SessionPlan plan) {
+std::shared_ptr<SessionStage> PlanSequence::current() const {
+    const std::lock_guard lock(stagesMutex_);
+    return current_;
+}
+
+std::shared_ptr<SessionStage> PlanSequence::of(int node) const {
+    const std::lock_guard lock(stagesMutex_);
+    return ofNodes_[static_cast<size_t>(node)];
+}
+
+void PlanSequence::assign(int node, std::shared_ptr<SessionStage> stage) {
+    const std::lock_guard lock(stagesMutex_);
+    ofNodes_.resize(std::max(ofNodes_.size(), static_cast<size_t>(node) + 1));
+    ofNodes_[static_cast<size_t>(node)].swap(stage); // the earlier stage ends after the lock is released
+}
+
+std::shared_ptr<SessionStage> PlanSequence::addStage(SessionConfig config, SessionPlan plan) {
     const auto itself = std::make_shared<SessionStage*>(nullptr); // the address, once it is known
-    auto stage = std::make_unique<SessionStage>(
+    auto stage = std::make_shared<SessionStage>(
         std::move(config), std::move(plan), outputs_,
         [this, itself](WindowPicture picture) { deliver(**itself, std::move(picture)); }, announceOf(itself));
     *itself = stage.get();
     const auto count = static_cast<int>(stage->plan.nodes.size());
-    for (int node = nodeCount(); node < count; ++node) assign(node, *stage);
+    for (int node = nodeCount(); node < count; ++node) assign(node, stage);
     nodeCount_.store(std::max(count, nodeCount()), std::memory_order_release);
-    const std::lock_guard lock(mutex_);
-    stages_.push_back(std::move(stage));
-    return *stages_.back();
+    return stage;
 }
 
 // Assignments of an earlier stage have no receiver, and those of a later one wait for its change.
 LoadBalancer::Announce PlanSequence::announceOf(const std::shared_ptr<SessionStage*>& stage) {
     const auto ifCurrent = [this, stage](const auto& announce, const auto&... values) {
         const std::lock_guard lock(announceMutex_);
-        if (announce && current_.load() == *stage) announce(values...);
+        if (announce && current().get() == *stage) announce(values...);
     };
     return {[this, ifCurrent](const ViewportAssignment& areas) { ifCurrent(hooks_.announce.viewports, areas); },
             [this, ifCurrent](const RangeAssignment& ranges) { ifCurrent(hooks_.announce.ranges, ranges); },
             [this, ifCurrent](uint32_t client, double rate) { ifCurrent(hooks_.announce.pace, client, rate); }};
 }
 
-SessionStage& PlanSequence::prepare(SessionConfig config, SessionPlan plan) {
+std::shared_ptr<SessionStage> PlanSequence::prepare(SessionConfig config, SessionPlan plan) {
     const int before = nodeCount();
-    SessionStage& stage = addStage(std::move(config), std::move(plan));
-    for (const NodePlan& node : stage.plan.nodes)
-        if (node.isVacant || node.node >= before) stage.pictures.nodeLost(node.node); // until it joins
+    auto stage = addStage(std::move(config), std::move(plan));
+    for (const NodePlan& node : stage->plan.nodes)
+        if (node.isVacant || node.node >= before) stage->pictures.nodeLost(node.node); // until it joins
+    // Nodes of prepared stages that never became current have ended.
+    for (int node = static_cast<int>(current()->plan.nodes.size()); node < before; ++node) assign(node, stage);
     return stage;
 }
 
-void PlanSequence::change(SessionStage& next, std::set<int> kept, const std::vector<int>& leaving, uint32_t view) {
+void PlanSequence::change(const std::shared_ptr<SessionStage>& next, std::set<int> kept,
+                          const std::vector<int>& leaving, uint32_t view) {
     {
         const std::lock_guard lock(announceMutex_);
-        current_.store(&next, std::memory_order_release);
+        const std::lock_guard stages(stagesMutex_);
+        current_ = next;
     }
-    for (const NodePlan& node : next.plan.nodes) { // lost nodes of both stages
-        const bool isOld = !node.isVacant && &of(node.node) != &next;
-        if (!isOld || kept.contains(node.node)) continue;
-        next.pictures.nodeLost(node.node);
-        next.balancer.nodeLost(node.node);
+    for (const NodePlan& node : next->plan.nodes) {
+        if (of(node.node) == next || kept.contains(node.node) || std::ranges::count(leaving, node.node) > 0) continue;
+        if (!node.isVacant) { // a lost node of both stages
+            next->pictures.nodeLost(node.node);
+            next->balancer.nodeLost(node.node);
+        }
         assign(node.node, next);
     }
     const std::lock_guard lock(mutex_);
@@ -129,7 +147,7 @@ void PlanSequence::change(SessionStage& next, std::set<int> kept, const std::vec
     before.draining = kept;
     before.draining.insert(leaving.begin(), leaving.end());
     before.isOver = before.draining.empty();
-    entries_.push_back({&next, {}, {}, false});
+    entries_.push_back({next, {}, {}, false});
     kept_ = std::move(kept);
     view_ = view;
 }
@@ -145,9 +163,9 @@ void PlanSequence::deliver(const SessionStage& stage, WindowPicture picture) {
     picture.isOnWall = stage.ownsWallWindows;
     const std::lock_guard lock(mutex_);
     for (Entry& entry : entries_) {
-        if (entry.stage != &stage) {
+        if (entry.stage.get() != &stage) {
             if (entry.isOver) continue;
-            const auto own = std::ranges::find(entries_, &stage, &Entry::stage);
+            const auto own = std::ranges::find(entries_, &stage, [](const Entry& e) { return e.stage.get(); });
             if (own != entries_.end()) own->held.push_back(std::move(picture));
             return;
         }
@@ -157,7 +175,7 @@ void PlanSequence::deliver(const SessionStage& stage, WindowPicture picture) {
 
 // The node's messages have passed the end of its stage: a change, its Goodbye or its loss.
 void PlanSequence::passed(int node) {
-    std::vector<SessionStage*> over;
+    std::vector<std::shared_ptr<SessionStage>> over;
     {
         const std::lock_guard lock(mutex_);
         bool isNext = true; // all earlier stages are over
@@ -167,64 +185,58 @@ void PlanSequence::passed(int node) {
             if (entry.draining.erase(node) > 0 && entry.draining.empty()) {
                 entry.isOver = true;
                 over.push_back(entry.stage);
-                if (entry.stage->ownsWallWindows && !current().ownsWallWindows) hooks_.closeWall();
+                if (entry.stage->ownsWallWindows && !current()->ownsWallWindows) hooks_.closeWall();
             }
             isNext = isNext && entry.isOver;
         }
     }
-    for (SessionStage* const stage : over) stage->pictures.release();
+    for (const auto& stage : over) stage->pictures.release();
 }
 
-std::vector<SessionStage*> PlanSequence::stagesWith(int node) const {
+std::vector<std::shared_ptr<SessionStage>> PlanSequence::stagesInUse() const {
     const std::lock_guard lock(mutex_);
-    std::vector<SessionStage*> found;
+    std::vector<std::shared_ptr<SessionStage>> found;
     for (const Entry& entry : entries_)
-        if (!entry.isOver && static_cast<size_t>(node) < entry.stage->plan.nodes.size()) found.push_back(entry.stage);
+        if (!entry.isOver) found.push_back(entry.stage);
     return found;
 }
 
-void PlanSequence::nodeJoins(int node, uint32_t view) { current().pictures.nodeJoins(node, view); }
+std::vector<std::shared_ptr<SessionStage>> PlanSequence::stagesWith(int node) const {
+    auto found = stagesInUse();
+    std::erase_if(found, [node](const auto& stage) { return static_cast<size_t>(node) >= stage->plan.nodes.size(); });
+    return found;
+}
+
+void PlanSequence::nodeJoins(int node, uint32_t view) { current()->pictures.nodeJoins(node, view); }
 
 void PlanSequence::nodeInView(int node, uint32_t view) {
-    for (SessionStage* const stage : stagesWith(node)) stage->pictures.nodeInView(node, view);
+    for (const auto& stage : stagesWith(node)) stage->pictures.nodeInView(node, view);
     {
         const std::lock_guard lock(mutex_);
         if (view < view_ || kept_.erase(node) == 0) return;
-        assign(node, *entries_.back().stage);
+        assign(node, entries_.back().stage);
     }
     passed(node);
 }
 
 void PlanSequence::nodeLost(int node) {
-    for (SessionStage* const stage : stagesWith(node)) {
+    for (const auto& stage : stagesWith(node)) {
         stage->pictures.nodeLost(node);
         stage->balancer.nodeLost(node);
     }
     {
         const std::lock_guard lock(mutex_);
-        if (kept_.erase(node) > 0) assign(node, *entries_.back().stage);
+        if (kept_.erase(node) > 0) assign(node, entries_.back().stage);
     }
     passed(node);
 }
 
 void PlanSequence::windowGone(uint32_t client, uint32_t window) {
-    std::vector<SessionStage*> stages;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const Entry& entry : entries_)
-            if (!entry.isOver) stages.push_back(entry.stage);
-    }
-    for (SessionStage* const stage : stages) stage->balancer.windowGone(client, window);
+    for (const auto& stage : stagesInUse()) stage->balancer.windowGone(client, window);
 }
 
 void PlanSequence::clientGone(uint32_t client) {
-    std::vector<SessionStage*> stages;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const Entry& entry : entries_)
-            if (!entry.isOver) stages.push_back(entry.stage);
-    }
-    for (SessionStage* const stage : stages) stage->pictures.clientGone(client);
+    for (const auto& stage : stagesInUse()) stage->pictures.clientGone(client);
 }
 
 } // namespace mural

@@ -6,7 +6,6 @@
 // a message therefore follows from its node.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <deque>
 #include <functional>
@@ -16,7 +15,6 @@
 #include <vector>
 
 #include "nodes/head/balancing/load_balancer.hpp"
-#include "nodes/head/broadcast/node_links.hpp"
 #include "nodes/head/frames/picture_assembler.hpp"
 #include "nodes/head/planning/node_plan.hpp"
 
@@ -35,7 +33,8 @@ struct SessionStage {
     LoadBalancer balancer;
 };
 
-// Thread-safe. References to stages and plans stay valid as long as the sequence.
+// Thread-safe. The sequence drops a stage at the first change after the stage is over. It drops a stage that never
+// became current when it prepares the next one. Others may keep stages longer.
 class PlanSequence {
 public:
     struct Hooks {
@@ -49,21 +48,25 @@ public:
 
     // The plan of the start, whose canvases the session shows.
     [[nodiscard]] const SessionPlan& outputs() const { return outputs_; }
-    [[nodiscard]] SessionStage& current() const { return *current_.load(std::memory_order_acquire); }
-    // Returns the stage of the node's latest message; before it is a member, the stage that it joins.
-    [[nodiscard]] SessionStage& of(int node) const {
-        return *(*ofNodes_)[static_cast<size_t>(node)].load(std::memory_order_acquire);
+    [[nodiscard]] std::shared_ptr<SessionStage> current() const;
+    // Returns the stage of the node's latest message; before it is a member, the stage that it joins. After it has
+    // left, a stage in which its number is vacant.
+    [[nodiscard]] std::shared_ptr<SessionStage> of(int node) const;
+    [[nodiscard]] std::shared_ptr<const NodePlan> nodePlan(int node) const {
+        const auto stage = of(node);
+        return {stage, &stage->plan.nodes[static_cast<size_t>(node)]};
     }
-    [[nodiscard]] const NodePlan& nodePlan(int node) const { return of(node).plan.nodes[static_cast<size_t>(node)]; }
     // The next number of a node. Lower numbers are in use, or vacant.
     [[nodiscard]] int nodeCount() const { return nodeCount_.load(std::memory_order_acquire); }
 
-    // Adds a stage whose plan has further nodes. change() makes it the current one. One thread calls both.
-    SessionStage& prepare(SessionConfig config, SessionPlan plan);
+    // Returns a stage whose plan has further nodes. change() makes it the current one. At most one stage is prepared at
+    // a time, and no earlier change is in progress.
+    std::shared_ptr<SessionStage> prepare(SessionConfig config, SessionPlan plan);
     // kept: members of both stages; other nodes of both are lost at the moment. leaving: other members of the current
     // stage. view: the view of the first joining node. Call at the position of the change, after everyone has passed
     // the one before.
-    void change(SessionStage& next, std::set<int> kept, const std::vector<int>& leaving, uint32_t view);
+    void change(const std::shared_ptr<SessionStage>& next, std::set<int> kept, const std::vector<int>& leaving,
+                uint32_t view);
     // Returns whether all nodes have passed the latest change.
     [[nodiscard]] bool isSettled() const;
 
@@ -75,33 +78,30 @@ public:
 
 private:
     struct Entry { // in the order of the changes
-        SessionStage* stage = nullptr;
+        std::shared_ptr<SessionStage> stage;
         std::set<int> draining;         // nodes that have not passed its end
         std::deque<WindowPicture> held; // until the earlier stage is over
         bool isOver = false;
     };
-    using StagesOfNodes = std::array<std::atomic<SessionStage*>, NodeLinks::kMaxNodes>;
-
-    SessionStage& addStage(SessionConfig config, SessionPlan plan);
+    std::shared_ptr<SessionStage> addStage(SessionConfig config, SessionPlan plan);
     void deliver(const SessionStage& stage, WindowPicture picture);
     void passed(int node);
-    void assign(int node, SessionStage& stage) {
-        (*ofNodes_)[static_cast<size_t>(node)].store(&stage, std::memory_order_release);
-    }
-    [[nodiscard]] std::vector<SessionStage*> stagesWith(int node) const;
+    void assign(int node, std::shared_ptr<SessionStage> stage);
+    [[nodiscard]] std::vector<std::shared_ptr<SessionStage>> stagesWith(int node) const;
+    [[nodiscard]] std::vector<std::shared_ptr<SessionStage>> stagesInUse() const;
     [[nodiscard]] LoadBalancer::Announce announceOf(const std::shared_ptr<SessionStage*>& stage);
 
     const Hooks hooks_;
     const SessionPlan outputs_;
-    const std::unique_ptr<StagesOfNodes> ofNodes_ = std::make_unique<StagesOfNodes>();
     std::atomic<int> nodeCount_{0};
-    std::atomic<SessionStage*> current_{nullptr};
-    std::mutex announceMutex_;                          // held while the current stage announces, and by change()
-    mutable std::mutex mutex_;                          // guards the members below; locked after those of a stage
-    std::vector<std::unique_ptr<SessionStage>> stages_; // includes those that never became current
-    std::deque<Entry> entries_;                         // stages that were or are current
-    std::set<int> kept_;                                // nodes that have not passed the latest change
-    uint32_t view_ = 0;                                 // of the latest change
+    std::mutex announceMutex_;       // held while the current stage announces, and by change()
+    mutable std::mutex mutex_;       // guards the members below; locked after those of a stage
+    std::deque<Entry> entries_;      // the current stage, and earlier ones since the change before the latest
+    std::set<int> kept_;             // nodes that have not passed the latest change
+    uint32_t view_ = 0;              // of the latest change
+    mutable std::mutex stagesMutex_; // guards the members below; locked last
+    std::shared_ptr<SessionStage> current_;
+    std::vector<std::shared_ptr<SessionStage>> ofNodes_;
 };
 
 } // namespace mural
