@@ -1,5 +1,6 @@
 #include "balancer/equalizers/view_equalizer.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mural::balance {
@@ -88,7 +89,10 @@ void ViewEqualizer::assign(States& states) {
     for (Segment& s : segments_) {
         const bool isServed =
             std::any_of(s.leaves.begin(), s.leaves.end(), [&](const Leaf& l) { return usage_[at(l.compound)] > 0; });
-        if (!isServed) usage_[at(s.leaves.front().compound)] = kLeastShare; // each segment has at least one pipe
+        if (!isServed) { // each segment has at least one pipe, its own if it draws itself
+            const auto own = std::ranges::find(s.leaves, s.ownPipe, &Leaf::pipe);
+            usage_[at((own == s.leaves.end() ? s.leaves.front() : *own).compound)] = kLeastShare;
+        }
         s.applied = s.need;
         for (const Leaf& leaf : s.leaves) {
             decision_.moved |= states[at(leaf.compound)].usage != usage_[at(leaf.compound)];
