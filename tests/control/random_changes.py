@@ -3,7 +3,8 @@
 
 random_changes.py --build build/release [--cases exact,killed] [--list]
 RANDOM_CHANGES=200 and RANDOM_SEEDS=1,2,3 in the environment change the number of changes and the seeds. A
-slow machine performs fewer changes, unless RANDOM_CHANGES is set.
+slow machine performs fewer changes, unless RANDOM_CHANGES is set. Each seed prints the head's memory after equally many
+changes, and its slope in the second half.
 """
 
 import json
@@ -31,9 +32,26 @@ PLANS = [("--balance", "auto", "--local-nodes", "3"), ("--tiles", "2x1"), ("--ba
          ("--dplex", "2"), ("--tile-queue", "64x64", "--local-nodes", "3"), ("--undo",)]
 
 
-def memory_mib(pid):
+SAMPLES = 20  # printed values of the memory
+
+
+def memory_kib(pid):
     with open("/proc/%d/status" % pid, encoding="ascii") as file:
-        return next(int(line.split()[1]) for line in file if line.startswith("VmRSS")) // 1024
+        return next(int(line.split()[1]) for line in file if line.startswith("VmRSS"))
+
+
+def memory_mib(pid):
+    return memory_kib(pid) // 1024
+
+
+def print_memory(seed, kib):
+    """kib: the memory after each change."""
+    shown = ["%.1f" % (kib[i] / 1024) for i in range(0, len(kib), max(1, len(kib) // SAMPLES))]
+    late = kib[len(kib) // 2:]
+    middle = (len(late) - 1) / 2
+    spread = sum((i - middle) ** 2 for i in range(len(late)))
+    slope = sum((i - middle) * value for i, value in enumerate(late)) / spread if spread else 0
+    print("    seed %d: head MiB after changes: %s; %.0f KiB per change in the second half" % (seed, " ".join(shown), slope))
 
 
 def end_recording(context, run):
@@ -106,7 +124,7 @@ def perform(context, seed, kills):
             if not frames_go_on(context, run):
                 return "no frames: %s" % " | ".join(run.standard_error[-3:])
             head = run.wait_for_processes(cases.HEAD)[0]
-            done, count, early = {}, 0, None
+            done, count, early, memory = {}, 0, None, []
             began = time.monotonic()
             while count < CHANGES and (count < LEAST_CHANGES or time.monotonic() < began + SECONDS or (kills and not done.get("kill"))):
                 words, succeeded = change(context, run, numbers, folder, kills)
@@ -114,6 +132,7 @@ def perform(context, seed, kills):
                 if not frames_go_on(context, run):
                     return "no frames after %s, change %d of seed %d: %s" % (" ".join(words), count, seed, " | ".join(run.standard_error[-5:]))
                 count += 1
+                memory.append(memory_kib(head))
                 is_half = count > CHANGES // 2 or (2 * count >= LEAST_CHANGES and time.monotonic() > began + SECONDS / 2)
                 if early is None and is_half:
                     end_recording(context, run)
@@ -127,6 +146,7 @@ def perform(context, seed, kills):
             return "seed %d: %s" % (seed, wrong)
         with open(report, encoding="utf-8") as file:
             numbers_at_end = json.load(file)
+    print_memory(seed, memory)
     print("    seed %d: %d changes, %s; head %d MiB, then %d; %d frames compared, %d pixels differ" % (
         seed, count, ", ".join("%s %d" % item for item in sorted(done.items())), early, late, numbers_at_end["verifiedFrames"], numbers_at_end["differingPixels"]))
     # Without --verify the program draws so many frames that the rejoin log alone grows by 2 MiB per second.
