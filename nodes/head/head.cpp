@@ -15,6 +15,7 @@
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/output/windows/app_window.hpp"
+#include "nodes/output/windows/redraw_request.hpp"
 #include "nodes/output/outputs.hpp"
 #include "nodes/output/files/png_files.hpp"
 #include "nodes/output/windows/wall_sink.hpp"
@@ -25,6 +26,7 @@ namespace {
 
 constexpr int64_t kConfigPatienceMs = 10'000;
 constexpr int64_t kLaunchPatienceMs = 30'000;
+constexpr int64_t kRedrawMs = 1'000; // the request of a redraw; the end of the session may wait for it
 
 volatile std::sig_atomic_t endRequested = 0;
 void requestEnd(int) { endRequested = 1; }
@@ -87,6 +89,11 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, He
         auto opened = AppWindow::open(target);
         if (!opened) return Result<std::unique_ptr<PictureSink>>(opened.error());
         return Result<std::unique_ptr<PictureSink>>(std::move(*opened));
+    };
+    options.requestRedraw = [display = config.displayName](const NativeWindow& window) {
+        const auto done =
+            requestRedraw(window.display.empty() ? display : window.display, window.id, Deadline::inMs(kRedrawMs));
+        if (!done) log::debug(log::Topic::Output, "no redraw of a coarse picture: ", done.error().message);
     };
     options.openWall = [config, overlay = options.overlay](const WallPlace& place) {
         WallWindowsConfig wall;

@@ -63,6 +63,7 @@ class Drawn:
                 self.wrong = self.wrong or cases.check_end(run, 0, frames if complete else None)
                 self.messages = "\n".join(run.standard_error)
                 self.still = max((int(line.split()[3]) for line in run.standard_output if line.startswith("frame ")), default=0)
+                self.exposures = [line for line in run.standard_output if line.endswith("exposed")]
                 self.times = [float(line.split()[2]) for line in run.standard_output if line.startswith("frame ")]
             self.pictures, self.equalizers = [], []
             if self.wrong is not None:
@@ -159,6 +160,19 @@ def frame_after_a_pause(context):
         return drawn.wrong
     apart = [differing(a, b) for a, b in zip(native(context), drawn.pictures)]
     return None if apart[rest - 1] > 0 and apart[rest] == 0 and apart[rest + 3] > 0 else "pixels differ: %s" % apart
+
+
+@cases.case
+def program_that_waits_for_events(context):
+    """A program that stops with a coarse picture receives one Expose event, and its redraw has full resolution."""
+    redraw = STEP + 20
+    drawn = Drawn(context, HALVES, HIGH_RATE, redraw + 2, environment={"LOAD_REDRAW": str(redraw)}, options=("--display", "app"))
+    if drawn.wrong is not None:
+        return drawn.wrong
+    apart = [differing(native(context)[redraw - 1], picture) for picture in drawn.pictures[redraw - 1:]]
+    if drawn.exposures != ["exposed", "not exposed"]:
+        return "the program was %s" % drawn.exposures
+    return None if apart[0] > 0 and not any(apart[1:]) else "pixels differ: %s" % apart
 
 
 @cases.case

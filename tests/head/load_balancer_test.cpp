@@ -25,12 +25,14 @@ protected:
         areas_.clear();
         ranges_.clear();
         paces_.clear();
+        redraws_ = 0;
         balancer_ = std::make_unique<LoadBalancer>(
             plan_,
             LoadBalancer::Announce{
                 [this](const ViewportAssignment& areas) { areas_.push_back(areas); },
                 [this](const RangeAssignment& ranges) { ranges_.push_back(ranges); },
-                [this](uint32_t client, double framesPerSecond) { paces_.emplace_back(client, framesPerSecond); }},
+                [this](uint32_t client, double framesPerSecond) { paces_.emplace_back(client, framesPerSecond); },
+                [this](uint32_t, uint32_t) { ++redraws_; }},
             plant);
         alive_.assign(plan_.nodes.size(), true);
         frames_ = 0;
@@ -145,6 +147,7 @@ protected:
     std::vector<ViewportAssignment> areas_;
     std::vector<RangeAssignment> ranges_;
     std::vector<std::pair<uint32_t, double>> paces_; // client, frames per second
+    int redraws_ = 0;
     std::vector<bool> alive_;
     uint32_t frames_ = 0, client_ = 1;
     double efficiency_ = 0; // of the last frame
@@ -577,7 +580,7 @@ protected:
         m.frame = sent_;
         m.width = kWidth;
         m.height = kHeight;
-        m.areas = areas_.empty() ? 0 : areas_.back().number;
+        m.areas = keptAreas_ ? keptAreas_ : areas_.empty() ? 0 : areas_.back().number;
         m.flags = flags;
         m.busyNs = static_cast<uint64_t>(tookNs);
         for (int node = 0; node < 2; ++node) balancer_->frameDone(node, m, nowNs_);
@@ -585,6 +588,7 @@ protected:
     }
 
     uint32_t sent_ = 0;
+    uint32_t keptAreas_ = 0; // number of the areas of all frames; 0: the latest
     int64_t nowNs_ = 1'000'000'000;
     double tookMs_ = 0;
 };
@@ -622,6 +626,43 @@ TEST_F(ZoomTest, announcesFullResolutionBeforeTheFrameAfterARepeatedOne) {
     EXPECT_EQ(zoom(), 1) << "slow frames are right while nothing moves";
     send(false);
     EXPECT_NEAR(zoom(), moving, .05) << "it moves again";
+}
+
+TEST_F(ZoomTest, requestsOneRedrawOfACoarsePictureThatStandsStill) {
+    for (int i = 0; i < 20; ++i) draw(300);
+    balancer_->tick(nowNs_ + 100'000'000);
+    EXPECT_EQ(redraws_, 0);
+    for (int i = 0; i < 5; ++i) balancer_->tick(nowNs_ + 500'000'000 + i);
+    EXPECT_EQ(redraws_, 1);
+    nowNs_ += 600'000'000;
+    keptAreas_ = areas_.back().number; // full resolution; its end announces the zoom of the next frame
+    draw(300);
+    keptAreas_ = 0;
+    for (int i = 0; i < 5; ++i) balancer_->tick(nowNs_ + 500'000'000 + i);
+    EXPECT_EQ(redraws_, 1) << "the picture is no longer coarse";
+    for (int i = 0; i < 20; ++i) draw(300);
+    balancer_->tick(nowNs_ + 500'000'000);
+    EXPECT_EQ(redraws_, 2) << "it has moved again";
+}
+
+TEST_F(ZoomTest, requestsNoRedrawThatWouldBeCoarse) {
+    for (int i = 0; i < 20; ++i) draw(300);
+    ASSERT_TRUE(balancer_->freeze(balancer_->totals().at(0).id, true).ok());
+    balancer_->tick(nowNs_ + 500'000'000);
+    EXPECT_EQ(redraws_, 0) << "the zoom is frozen";
+}
+
+TEST_F(ZoomTest, requestsNoRedrawForeverOfAProgramThatKeepsTheZoom) {
+    for (int i = 0; i < 20; ++i) draw(300);
+    const uint32_t coarse = areas_.back().number;
+    for (int i = 0; i < 10; ++i) {
+        balancer_->tick(nowNs_ + 500'000'000);
+        nowNs_ += 600'000'000;
+        send(false);
+        keptAreas_ = coarse;
+        finish(10'000'000);
+    }
+    EXPECT_LE(redraws_, 2);
 }
 
 TEST_F(ZoomTest, announcesFullResolutionWhenNoFramesFollow) {

@@ -24,6 +24,7 @@ using config::kNone;
 // further assignments would have no effect.
 constexpr size_t kMaxIssues = 64;
 constexpr size_t kRatedFrames = 32;
+constexpr int kMaxRedraws = 2; // a program that redraws only a part never shows full resolution
 constexpr uint32_t kSeed = 20261123;
 
 bool plantsAreas(const std::string& plant) { return plant == "areas" || plant == "early" || plant == "uncleared"; }
@@ -104,6 +105,7 @@ void LoadBalancer::frameDone(int node, const wire::FrameDoneMessage& message, in
     if (times_.follow(message)) {
         resize();
         program_ = {};
+        isCoarse_ = false;
         issues_.clear();
         advance(false);
     }
@@ -137,6 +139,16 @@ void LoadBalancer::tick(int64_t nowNs) {
     if (!movesZooms()) return;
     const std::lock_guard lock(mutex_);
     observeStill(nowNs);
+    requestRedraw(nowNs);
+}
+
+// The nodes cannot draw the frame again, because it may change objects that it depends on. The program can.
+void LoadBalancer::requestRedraw(int64_t nowNs) {
+    const bool isFull = std::ranges::all_of(areas_.zooms, [](double zoom) { return zoom == 1; }); // not frozen
+    if (!announce_.redraw || !isCoarse_ || !isFull || redraws_ >= kMaxRedraws || !program_.isIdle(nowNs)) return;
+    ++redraws_;
+    isCoarse_ = false;
+    announce_.redraw(times_.client(), times_.window());
 }
 
 // Only equalizers of zooms use this, and at once: their next frame depends on it.
@@ -339,8 +351,18 @@ void LoadBalancer::observe(const FrameTimes::Frame& frame, uint32_t number, int6
         statistics.roots.push_back({root, 1e-9 * static_cast<double>(frameNs), isStill_});
     while (&issues_.front() != issue) issues_.pop_front();
     if (statistics.leaves.empty()) return;
+    isCoarse_ = isCoarse(statistics);
+    if (!isCoarse_) redraws_ = 0;
     countFrame(frame);
     planner_->addStatistics(statistics);
+}
+
+bool LoadBalancer::isCoarse(const balance::FrameStatistics& statistics) const {
+    constexpr double kSame = .999;
+    return std::ranges::any_of(statistics.leaves, [&](const LeafStatistics& leaf) {
+        const Zoom full = zoomOf(planner_->config(), leaf.compound);
+        return drawnZoomOf(leaf.compound) && (leaf.zoom.x < kSame * full.x || leaf.zoom.y < kSame * full.y);
+    });
 }
 
 bool LoadBalancer::drawsInTurn(Index compound) const {

@@ -36,6 +36,9 @@ public:
         std::function<void(const RangeAssignment&)> ranges;
         // The client begins frames at this rate at most; 0: no limit. May be empty.
         std::function<void(uint32_t client, double framesPerSecond)> pace;
+        // The client draws no frames, and the latest one of the window is coarse. A further one has full resolution.
+        // Called by tick() only. May be empty.
+        std::function<void(uint32_t client, uint32_t window)> redraw;
     };
 
     // plant: fault injection for tests; each value divides at random after each frame and reply of a node. With "areas"
@@ -93,6 +96,8 @@ private:
     [[nodiscard]] bool isUnzoomed(const FrameTimes::Frame& frame, balance::Index compound) const;
     void observe(const FrameTimes::Frame& frame, uint32_t number, int64_t nowNs);
     void observeStill(int64_t nowNs);
+    [[nodiscard]] bool isCoarse(const balance::FrameStatistics& statistics) const;
+    void requestRedraw(int64_t nowNs);
     [[nodiscard]] const Issue* issueOf(const FrameTimes::Frame& frame) const;
     [[nodiscard]] std::vector<double> busyByCompound(const FrameTimes::Frame& frame) const;
     [[nodiscard]] bool drawsInTurn(balance::Index compound) const;
@@ -119,6 +124,8 @@ private:
     uint64_t measured_ = 0; // frames
     ProgramFrames program_; // of the followed window
     bool isStill_ = false;  // as the equalizers of zooms have it
+    bool isCoarse_ = false; // the latest frame has fewer pixels than the file permits
+    int redraws_ = 0;       // requests since the latest frame that is not coarse
     bool isRandom_ = false;
     struct GivenUp {
         uint32_t number = 0;                                      // of the first assignment without its area

@@ -34,9 +34,10 @@ int64_t ProgramFrames::finished(uint32_t frame, int64_t nowNs) {
     return isFirst ? 0 : nowNs - beganNs;
 }
 
-bool ProgramFrames::isStill(int64_t nowNs) const {
-    const bool isIdle = sent_ != 0 && finished_ >= sent_ && nowNs - finishedNs_ > kIdleNs;
-    return isRepeated_ || isIdle;
+bool ProgramFrames::isIdle(int64_t nowNs) const {
+    return sent_ != 0 && finished_ >= sent_ && nowNs - finishedNs_ > kIdleNs;
 }
+
+bool ProgramFrames::isStill(int64_t nowNs) const { return isRepeated_ || isIdle(nowNs); }
 
 } // namespace mural

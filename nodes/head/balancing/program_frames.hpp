@@ -17,6 +17,7 @@ public:
     // wait for its first commands. 0: unknown, for the first frame.
     int64_t finished(uint32_t frame, int64_t nowNs);
     [[nodiscard]] bool isStill(int64_t nowNs) const;
+    [[nodiscard]] bool isIdle(int64_t nowNs) const; // no frame for a while
 
 private:
     std::deque<std::pair<uint32_t, int64_t>> began_; // unfinished frames, and when they began

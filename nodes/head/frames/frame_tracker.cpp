@@ -100,6 +100,14 @@ void FrameTracker::isOn(uint32_t id, uint32_t window, uint64_t native) {
     client(id).natives[window] = native;
 }
 
+uint64_t FrameTracker::nativeOf(uint32_t id, uint32_t window) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) return 0;
+    const auto native = found->second.natives.find(window);
+    return native == found->second.natives.end() ? 0 : native->second;
+}
+
 void FrameTracker::pictureReleased(uint32_t id, uint32_t frame) {
     const std::lock_guard lock(mutex_);
     Client& c = client(id);

@@ -50,6 +50,7 @@ public:
     void delayPicture(uint32_t client, uint32_t frame);
     // Sets the X window of a window. Several drawables may belong to one X window.
     void isOn(uint32_t client, uint32_t window, uint64_t native);
+    [[nodiscard]] uint64_t nativeOf(uint32_t client, uint32_t window) const; // 0: unknown
     void pictureReleased(uint32_t client, uint32_t frame);
 
     [[nodiscard]] ClientProgress progressOf(uint32_t client) const;

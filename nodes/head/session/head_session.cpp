@@ -70,7 +70,10 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
                [this](const RangeAssignment& ranges) {
                    nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(ranges));
                },
-               [this](uint32_t client, double framesPerSecond) { pacer_.setPace(client, framesPerSecond); }}}),
+               [this](uint32_t client, double framesPerSecond) { pacer_.setPace(client, framesPerSecond); },
+               [this](uint32_t client, uint32_t window) {
+                   wantedRedraw_ = {client, window};
+               }}}),
       advice_(config_, static_cast<int>(nodes.size())),
       absences_(absencesOf(nodes)),
       views_(nodes.size()),
@@ -105,6 +108,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
 HeadSession::~HeadSession() {
     tearingDown_ = finishing_ = true;
     if (spareMove_.joinable()) spareMove_.join();
+    if (redrawing_.joinable()) redrawing_.join();
     controlServer_.reset();
     server_.reset();
     if (output_) output_->drop();
@@ -175,6 +179,23 @@ void HeadSession::tick() {
     tickStatistics(nowNs);
     tickOverlay(nowNs);
     balancer()->tick(nowNs);
+    redrawStillWindow();
+}
+
+// A display may not answer for a while, so another thread asks it.
+void HeadSession::redrawStillWindow() {
+    if (!wantedRedraw_ || isRedrawing_) return;
+    const auto [client, window] = *std::exchange(wantedRedraw_, std::nullopt);
+    const uint64_t native = frames_.nativeOf(client, window);
+    if (native == 0 || !options_.requestRedraw) return;
+    const auto target = nativeWindowOf(client, window, native);
+    if (!target) return;
+    if (redrawing_.joinable()) redrawing_.join();
+    isRedrawing_ = true;
+    redrawing_ = std::thread([this, target] {
+        options_.requestRedraw(*target);
+        isRedrawing_ = false;
+    });
 }
 
 void HeadSession::reportProgress(int64_t nowNs) {
@@ -431,7 +452,7 @@ SessionStatus HeadSession::status() {
     result.latency = programs_->latency();
     result.recording = recording_.status();
     result.delta = nodes_.deltaCounts();
-    result.equalizers = balancer()->totals();
+    result.equalizers = stage->balancer.totals();
     result.programs = programs_->status();
     for (ProgramStatus& program : result.programs) {
         program.progress = frames_.progressOf(program.id);
@@ -463,7 +484,7 @@ SessionNumbers HeadSession::numbers() {
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
     result.delta = nodes_.deltaCounts();
-    result.equalizers = stage->balancer.totals();
+    result.equalizers = balancer()->totals();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = advice_.drawnWhole();

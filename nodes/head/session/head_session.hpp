@@ -68,6 +68,8 @@ struct HeadOptions {
     std::unique_ptr<PictureSink> file;        // sink of --out; null: none
     std::function<std::string()> lastPicture; // path of the last file; may be empty
     std::function<Result<std::unique_ptr<PictureSink>>(const NativeWindow& window)> openWindow;
+    // Requests a redraw of a program's own window. May take a second. May be empty.
+    std::function<void(const NativeWindow& window)> requestRedraw;
     std::shared_ptr<Overlay> overlay;                      // of the windows that openWall opens; null: they show none
     std::vector<std::shared_ptr<PictureSink>> canvasFiles; // sinks of --out for the further canvases
     // opens wall windows if the head shows the wall (headShowsWall) or a further canvas
@@ -176,9 +178,9 @@ private:
     void beginPlanChange();
     Result<void> exchangeNodes(PendingChange& change);
     void endLeftNodes(int64_t nowNs);
+    void forgetNode(int node);
     void checkForNodes();
     void addStopOperations(ControlOperations& operations);
-    void forgetNode(int node);
     bool hasOtherMembers(int node);
     Result<void> stopNode(int node, bool isForced);
     Result<void> handOver(int node, Deadline deadline); // to the nodes that take its area
@@ -226,6 +228,9 @@ private:
     void watchNodes(int64_t nowNs);
     // called by the output's thread
     Result<std::unique_ptr<PictureSink>> openNativeWindow(const WindowPicture& picture);
+    // Returns the X window; `native` as in WindowPicture. Empty: on a display that has no number.
+    std::optional<NativeWindow> nativeWindowOf(uint32_t client, uint32_t window, uint64_t native);
+    void redrawStillWindow();
     void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // window: client, window
     void reportProgress(int64_t nowNs);
 
@@ -285,7 +290,10 @@ private:
     std::atomic<bool> serving_{false};
     std::vector<std::string> spares_;  // remaining hosts of --spare-nodes; used by the session's thread
     std::vector<int> waitingForSpare_; // lost nodes; used by the session's thread
-    std::thread spareMove_;            // moves nodes to a spare host
+    std::optional<std::pair<uint32_t, uint32_t>> wantedRedraw_; // client, window; used by the session's thread
+    std::thread redrawing_;                                     // runs options_.requestRedraw
+    std::atomic<bool> isRedrawing_{false};
+    std::thread spareMove_; // moves nodes to a spare host
     std::atomic<bool> isMovingToSpare_{false};
     std::atomic<int> lostAfterMove_{-1}; // node whose move to a spare host failed; -1: none
     std::atomic<bool> wallLost_{false};

@@ -344,15 +344,21 @@ void HeadSession::announceReady() {
     control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
 }
 
+std::optional<NativeWindow> HeadSession::nativeWindowOf(uint32_t client, uint32_t window, uint64_t native) {
+    const auto number = static_cast<uint32_t>(native >> 32);
+    if (number == capture::kNoDisplay) return std::nullopt;
+    NativeWindow found{client, window, static_cast<uint32_t>(native), {}};
+    if (serving_) found.display = programs_->displayName(client, number);
+    return found;
+}
+
 Result<std::unique_ptr<PictureSink>> HeadSession::openNativeWindow(const WindowPicture& picture) {
-    const auto number = static_cast<uint32_t>(picture.nativeWindow >> 32);
-    if (number == capture::kNoDisplay)
+    const auto window = nativeWindowOf(picture.client, picture.window, picture.nativeWindow);
+    if (!window)
         return Error{fmt::format("a program has windows on more than {} X displays, or on one with a name longer than "
                                  "{} bytes; its window there shows nothing",
                                  capture::kDisplays, capture::kDisplayNameBytes - 1)};
-    NativeWindow window{picture.client, picture.window, static_cast<uint32_t>(picture.nativeWindow), {}};
-    if (serving_) window.display = programs_->displayName(picture.client, number);
-    return options_.openWindow(window);
+    return options_.openWindow(*window);
 }
 
 } // namespace mural

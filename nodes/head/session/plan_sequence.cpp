@@ -113,7 +113,8 @@ LoadBalancer::Announce PlanSequence::announceOf(const std::shared_ptr<SessionSta
     };
     return {[this, ifCurrent](const ViewportAssignment& areas) { ifCurrent(hooks_.announce.viewports, areas); },
             [this, ifCurrent](const RangeAssignment& ranges) { ifCurrent(hooks_.announce.ranges, ranges); },
-            [this, ifCurrent](uint32_t client, double rate) { ifCurrent(hooks_.announce.pace, client, rate); }};
+            [this, ifCurrent](uint32_t client, double rate) { ifCurrent(hooks_.announce.pace, client, rate); },
+            [this, ifCurrent](uint32_t client, uint32_t window) { ifCurrent(hooks_.announce.redraw, client, window); }};
 }
 
 std::shared_ptr<SessionStage> PlanSequence::prepare(SessionConfig config, SessionPlan plan) {
