@@ -81,6 +81,7 @@ struct TreeEqualizer {
 struct DfrEqualizer {
     std::optional<double> frameRate; // Hz
     std::optional<double> damping;
+    std::optional<double> minimum; // least zoom, relative to that of the compound
     SourcePosition at;
     friend bool operator==(const DfrEqualizer&, const DfrEqualizer&) = default;
 };

@@ -21,6 +21,7 @@ DfrEqualizer::DfrEqualizer(std::string id, const ResolvedConfig& config, Index c
       fullSides_(config.compounds.size(), 0) {
     parameters_.addNumber("framerate", fields.frameRate.value_or(10), .01, 1000, "Hz");
     parameters_.addNumber("damping", fields.damping.value_or(.5), 0, 1);
+    parameters_.addNumber("minimum", fields.minimum.value_or(0), 0, 1);
     while (config.compounds[at(root_)].parent != kNone) root_ = config.compounds[at(root_)].parent;
     for (size_t c = 0; c < fullSides_.size(); ++c) {
         bool isHere = false;
@@ -59,7 +60,7 @@ double DfrEqualizer::leastZoom(const FrameContext& context) const {
         if (channel != kNone) area = context.input.sizes.channels[at(channel)];
     }
     const double side = std::min(area.w * full_.x, area.h * full_.y);
-    return side > 0 ? std::min(1., kLeastPixels / side) : 1;
+    return side > 0 ? std::clamp(kLeastPixels / side, parameters_.number("minimum"), 1.) : 1;
 }
 
 void DfrEqualizer::decide(const FrameContext& context, States& states) {

@@ -247,6 +247,23 @@ TEST(DfrEqualizer, neverDrawsFewerThan128Pixels) {
     EXPECT_NEAR(z.picture.states()[at(z.source)].zoom->y * 1080, 128, 1);
 }
 
+TEST(DfrEqualizer, staysAboveTheMinimum) {
+    ZoomedSource z;
+    z.seconds = 1e6;
+    z.fields.minimum = .6;
+    DfrEqualizer equalizer("dfr", z.picture.config(), z.source, z.fields);
+    const auto zoomAfter = [&](int frames) {
+        for (int f = 0; f < frames; ++f) {
+            z.picture.update(equalizer);
+            equalizer.observe(z.draw());
+        }
+        return z.picture.states()[at(z.source)].zoom->x;
+    };
+    EXPECT_NEAR(zoomAfter(60), .6, 1e-6);
+    ASSERT_TRUE(equalizer.set("minimum", "0.3").ok());
+    EXPECT_NEAR(zoomAfter(60), .3, 1e-6);
+}
+
 // A zoom of the file, here or above, is full resolution.
 TEST(DfrEqualizer, neverExceedsTheZoomOfTheFile) {
     ZoomedSource z;

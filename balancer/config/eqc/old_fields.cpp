@@ -165,7 +165,7 @@ std::optional<Equalizer> todaysEqualizer(const LoadBalancer& b, SourcePosition a
             return LoadEqualizer{s.value, b.damping, b.assembleOnlyLimit, b.boundary, b.resistance, at};
     }
     if (b.mode == "DPLEX" || b.mode == "DPlex") return FramerateEqualizer{at};
-    if (b.mode == "DFR") return DfrEqualizer{b.frameRate, b.damping, at};
+    if (b.mode == "DFR") return DfrEqualizer{b.frameRate, b.damping, {}, at};
     if (b.mode == "MONITOR" || b.mode == "DDS") return MonitorEqualizer{at};
     return std::nullopt;
 }

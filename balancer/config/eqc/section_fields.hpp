@@ -203,6 +203,7 @@ void fields(auto& walk, Is<TreeEqualizer> auto& e) {
 void fields(auto& walk, Is<DfrEqualizer> auto& e) {
     walk.value("framerate", e.frameRate);
     walk.value("damping", e.damping);
+    walk.value("mural_minimum", e.minimum);
 }
 
 void fields(auto&, Is<FramerateEqualizer> auto&) {}
