@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tools/mural/accuracy/accuracy_plot.hpp"
+#include "tools/mural/accuracy/plot/accuracy_plot.hpp"
 #include "tools/mural/accuracy/accuracy_text.hpp"
 
 namespace mural::cli {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "nodes/launch/program_check.hpp"
-#include "tools/mural/accuracy/accuracy_plot.hpp"
+#include "tools/mural/accuracy/plot/accuracy_plot.hpp"
 #include "tools/mural/accuracy/accuracy_runs.hpp"
 #include "tools/mural/accuracy/accuracy_text.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
@@ -13,6 +13,7 @@
 #include "tools/mural/accuracy/program_rows.hpp"
 #include "tools/mural/accuracy/progress.hpp"
 #include "tools/mural/accuracy/recording_rows.hpp"
+#include "tools/mural/accuracy/resolution_rows.hpp"
 #include "tools/mural/accuracy/result_file.hpp"
 #include "tools/mural/accuracy/scene_rows.hpp"
 #include "tools/mural/accuracy/transform_rows.hpp"
@@ -49,6 +50,8 @@ Result<void> measureScenes(const AccuracyRuns& runs, bool quick, AccuracyReport&
     report.subject = scenes.subject();
     report.gl = scenes.gl();
     scenes.measure(report.rows);
+    if (Interruption::signal() != 0) return {};
+    measureResolutions(runs, quick, report.rows);
     if (Interruption::signal() != 0) return {};
     reportProgress("composition");
     measureComposition(report.rows);

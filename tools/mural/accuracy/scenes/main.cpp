@@ -18,17 +18,22 @@ using mural::scenes::View;
 
 struct Options {
     int width = 509, height = 383, frames = 6;
+    int first = 0;    // number of the first frame
+    int still = -1;   // all later frames show this one; -1: none does
     std::string save; // folder; empty: nothing is saved
     int scene = -1;   // a single scene; -1: all in sequence
     View view;
 };
 
 const char* const kUsage =
-    "usage: mural-scenes [--size WxH] [--frames N] [--scene NAME] [--save FOLDER] [--move X,Y] [--eye E,FOCUS]\n";
+    "usage: mural-scenes [--size WxH] [--frames N] [--first FRAME] [--still FRAME] [--scene NAME] [--save FOLDER]\n"
+    "                    [--move X,Y] [--eye E,FOCUS]\n";
 
 bool take(const std::string& name, const char* value, Options& o) {
     if (name == "--size") return std::sscanf(value, "%dx%d", &o.width, &o.height) == 2 && o.width > 0 && o.height > 0;
     if (name == "--frames") return std::sscanf(value, "%d", &o.frames) == 1 && o.frames > 0;
+    if (name == "--first") return std::sscanf(value, "%d", &o.first) == 1 && o.first >= 0;
+    if (name == "--still") return std::sscanf(value, "%d", &o.still) == 1 && o.still >= 0;
     if (name == "--move") return std::sscanf(value, "%f,%f", &o.view.moveX, &o.view.moveY) == 2;
     if (name == "--scene") {
         const auto found = std::ranges::find(mural::scenes::kSceneNames, std::string(value));
@@ -63,7 +68,8 @@ int drawAll(const Options& o) {
                 reinterpret_cast<const char*>(glGetString(GL_VERSION)));
     const mural::scenes::Scenes scenes(o.width, o.height, o.view);
     for (int frame = 0; frame < o.frames; ++frame) {
-        scenes.draw(o.scene < 0 ? frame : frame * static_cast<int>(mural::scenes::kSceneNames.size()) + o.scene);
+        const int number = o.still < 0 ? o.first + frame : std::min(o.first + frame, o.still);
+        scenes.draw(o.scene < 0 ? number : number * static_cast<int>(mural::scenes::kSceneNames.size()) + o.scene);
         if (const GLenum error = glGetError(); error != GL_NO_ERROR)
             throw std::runtime_error("GL error " + std::to_string(error) + " in frame " + std::to_string(frame));
         if (!o.save.empty()) save(o, frame);

@@ -1,4 +1,4 @@
-#include "tools/mural/accuracy/cost_plot.hpp"
+#include "tools/mural/accuracy/plot/cost_plot.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "tools/mural/accuracy/accuracy_plot.hpp"
+#include "tools/mural/accuracy/plot/accuracy_plot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "balancer/svg/svg.hpp"
 #include "tools/mural/accuracy/accuracy_text.hpp"
-#include "tools/mural/accuracy/cost_plot.hpp"
+#include "tools/mural/accuracy/plot/cost_plot.hpp"
 
 namespace mural::cli {
 
