@@ -131,9 +131,9 @@ struct NodeSetup {
     int64_t cacheBytes = int64_t{1} << 30;
     // in resync: receives earlier commands; sends nothing about them until it is a member (HeadCommand::Activate)
     bool isResyncing = false;
-    bool skipsFrames = false;  // with isResyncing: skips drawing until Synchronize
-    bool recordsSpans = false; // statistics are on: sends FrameSpans
-    uint32_t incarnation = 0;  // number of restarts
+    bool skipsFrames = false;   // with isResyncing: skips drawing until Synchronize
+    bool recordsSpans = false;  // statistics are on: sends FrameSpans
+    uint32_t incarnation = 0;   // number of restarts
     std::vector<double> ranges; // start and end of the share of every node of this picture, by rank; empty: one node
     int collector = 0; // node that composes this node's picture; the nodes of the ranges follow it, one per range
     std::string composition = "serial"; // name of the compositor::Strategy for that picture

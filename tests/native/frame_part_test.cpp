@@ -40,7 +40,7 @@ TEST(FramePart, followsAssignedAreas) {
     EXPECT_TRUE(partOf(config, &areas).drawn.empty());
 }
 
-TEST(FramePart, onlyTheCollectorOfRangesShowsThePicture) {
+TEST(FramePart, letOnlyTheCollectorShowThePicture) {
     PlayerConfig config;
     config.pass.ranges = 2;
     config.pass.share = {0, 0.5};
