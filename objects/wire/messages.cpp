@@ -256,8 +256,19 @@ void read(MessageReader& from, LateMessage& m) {
     m.missing = from.text(kMaxMissingBytes);
 }
 
+void write(MessageWriter& to, const PartMessage& m) {
+    to.byte(m.isLast);
+    to.raw(m.bytes);
+}
+void read(MessageReader& from, PartMessage& m) {
+    const uint8_t isLast = from.byte();
+    if (isLast > 1) return from.fail();
+    m.isLast = isLast != 0;
+    m.bytes = from.rest();
+}
+
 // Message kinds are the indices of the variant, from 1 on.
-static_assert(static_cast<size_t>(MessageKind::Late) == std::variant_size_v<Message>);
+static_assert(static_cast<size_t>(MessageKind::Part) == std::variant_size_v<Message>);
 
 template <size_t Index> std::optional<Message> decodeAs(size_t index, MessageReader& from) {
     if constexpr (Index < std::variant_size_v<Message>) {
@@ -295,7 +306,7 @@ std::optional<Message> decode(std::span<const std::byte> bytes) {
 const char* nameOf(MessageKind kind) {
     constexpr const char* kNames[] = {"unknown", "Share",  "Commit",       "Offer", "Unshare",  "BlobBegin", "BlobData",
                                       "BlobAt",  "Refuse", "CatalogueEnd", "Want",  "WantBlob", "Token",     "Ask",
-                                      "Item",    "Done",   "Closed",       "Enter", "Go",       "Late"};
+                                      "Item",    "Done",   "Closed",       "Enter", "Go",       "Late",      "Part"};
     const auto index = static_cast<size_t>(kind);
     return index < std::size(kNames) ? kNames[index] : kNames[0];
 }

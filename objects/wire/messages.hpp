@@ -52,6 +52,8 @@ enum class MessageKind : uint8_t {
     Enter,
     Go,
     Late,
+    // Lanes with a limit.
+    Part,
 };
 
 // A blob that encoded bytes refer to.
@@ -201,10 +203,16 @@ struct LateMessage {
     std::string missing; // names, separated by commas
 };
 
-using Message =
-    std::variant<ShareMessage, CommitMessage, OfferMessage, UnshareMessage, BlobBeginMessage, BlobDataMessage,
-                 BlobAtMessage, RefuseMessage, CatalogueEndMessage, WantMessage, WantBlobMessage, TokenMessage,
-                 AskMessage, ItemMessage, DoneMessage, ClosedMessage, EnterMessage, GoMessage, LateMessage>;
+// A part of a message that exceeds the limit of its lane; message_parts.hpp.
+struct PartMessage {
+    bool isLast = false;
+    std::span<const std::byte> bytes;
+};
+
+using Message = std::variant<ShareMessage, CommitMessage, OfferMessage, UnshareMessage, BlobBeginMessage,
+                             BlobDataMessage, BlobAtMessage, RefuseMessage, CatalogueEndMessage, WantMessage,
+                             WantBlobMessage, TokenMessage, AskMessage, ItemMessage, DoneMessage, ClosedMessage,
+                             EnterMessage, GoMessage, LateMessage, PartMessage>;
 
 // Returns the message as bytes. Names and texts beyond their limits are cut.
 archive::ByteBuffer encode(const Message& message);

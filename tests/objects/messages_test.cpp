@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "objects/wire/message_parts.hpp"
 #include "objects/wire/messages.hpp"
 
 namespace mural::objects {
@@ -33,6 +34,7 @@ std::vector<Message> examples() {
         EnterMessage{2, 17, 5000},
         GoMessage{2, 17, 4},
         LateMessage{2, 17, "left, right"},
+        PartMessage{true, kSomeBytes},
     };
 }
 
@@ -62,7 +64,9 @@ TEST(Messages, keepACommitOfOneNumberSmall) {
 TEST(Messages, rejectEveryTruncation) {
     for (const Message& message : examples()) {
         const auto bytes = bytesOf(message);
-        if (std::holds_alternative<BlobDataMessage>(message) || std::holds_alternative<ItemMessage>(message)) continue;
+        if (std::holds_alternative<BlobDataMessage>(message) || std::holds_alternative<ItemMessage>(message) ||
+            std::holds_alternative<PartMessage>(message))
+            continue;
         for (size_t length = 0; length < bytes.size(); ++length)
             EXPECT_FALSE(decode(std::span(bytes).first(length))) << message.index() << ' ' << length;
     }
@@ -76,6 +80,34 @@ TEST(Messages, rejectValuesOutOfRange) {
     EXPECT_FALSE(decode(bytesOf(CommitMessage{1, 0, 0, 0, {}})));
     EXPECT_FALSE(decode(std::vector<std::byte>{std::byte{0}}));
     EXPECT_FALSE(decode(std::vector<std::byte>{std::byte{200}, std::byte{1}}));
+}
+
+TEST(MessageParts, restoreLargeMessages) {
+    std::vector<std::byte> large(1000);
+    for (size_t i = 0; i < large.size(); ++i) large[i] = static_cast<std::byte>(i);
+    for (const size_t limit : {64U, 999U, 1000U, 5000U}) {
+        MessageJoiner joiner;
+        std::vector<std::vector<std::byte>> joined;
+        const auto pass = [&](std::span<const std::byte> part) {
+            EXPECT_LE(part.size(), limit);
+            const auto whole = joiner.input(part);
+            ASSERT_TRUE(whole);
+            if (whole.value()) joined.emplace_back(whole.value()->begin(), whole.value()->end());
+        };
+        cutMessage(large, limit, pass);
+        cutMessage(kSomeBytes, limit, pass);
+        cutMessage(large, limit, pass);
+        EXPECT_EQ(joined, (std::vector{large, kSomeBytes, large})) << limit;
+    }
+}
+
+TEST(MessageParts, rejectMessagesBetweenParts) {
+    MessageJoiner joiner;
+    const auto part = bytesOf(PartMessage{false, kSomeBytes});
+    EXPECT_TRUE(joiner.input(part));
+    EXPECT_FALSE(joiner.input(bytesOf(UnshareMessage{1})));
+    EXPECT_TRUE(joiner.input(bytesOf(UnshareMessage{1}))) << "the damaged message is dropped";
+    EXPECT_FALSE(joiner.input(std::vector{std::byte{20}}));
 }
 
 TEST(Messages, surviveRandomDamage) {
