@@ -51,9 +51,14 @@ constexpr size_t kMaxElementsAhead = 4096;
 
 template <class T> constexpr bool kIsNeverAField = false;
 
+template <class T>
+constexpr bool kIsPointer = std::is_pointer_v<T> || std::is_member_pointer_v<T> || requires(T& pointer) {
+    pointer.get() == &*pointer;
+};
+
 // The types without a specialization below cannot be fields.
 template <class T> struct Codec {
-    static_assert(!std::is_pointer_v<T> && !std::is_member_pointer_v<T>,
+    static_assert(!kIsPointer<T>,
                   "a pointer cannot be a field: use std::optional<T>, std::vector<T>, mural::Ref<T> or mural::Blob");
     static_assert(!std::is_same_v<T, long double>,
                   "long double differs between machines and cannot be a field: use double");

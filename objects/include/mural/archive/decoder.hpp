@@ -27,7 +27,7 @@ public:
 
     template <class... Fields> void operator()(Fields&... fields) {
         static_assert((!std::is_const_v<Fields> && ...),
-                      "fields() must not be a const function: decoding writes the fields");
+                      "decoding writes the fields: neither they nor the function fields() may be const");
         (Codec<Fields>::decode(*this, fields), ...);
     }
     template <class Field> Decoder& operator&(Field& field) {
