@@ -174,6 +174,11 @@ void Planner::add(const ActiveCompound& active, Task kind) {
 }
 
 FramePlan planFrame(const ResolvedConfig& config, const FrameInput& input, FramePlan old) {
+    if (input.sizes.channels.size() < config.channels.size()) {
+        FrameInput complete = input;
+        complete.sizes = displaySizes(config);
+        return Planner(config, complete, std::move(old)).run();
+    }
     return Planner(config, input, std::move(old)).run();
 }
 

@@ -10,11 +10,11 @@
 namespace mural {
 
 struct CompositeRule {
-    bool blends = false; // premultiplied colours, the later over the earlier; the depths do not matter
     // Less, LessOrEqual, Greater or GreaterOrEqual
     compositor::DepthFunction function = compositor::DepthFunction::Less;
     uint32_t clearedColour = 0, clearedDepth = 0;
-    bool deep = false; // the depth buffer has more than 24 bits
+    bool deep = false;   // the depth buffer has more than 24 bits
+    bool blends = false; // premultiplied colours, the later over the earlier; the depths do not matter
 };
 
 enum class LayerOrder : uint8_t { Earlier, Later }; // draw order of the other part

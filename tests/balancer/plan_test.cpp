@@ -333,4 +333,13 @@ TEST(Check, reportsPartsThatAreNeverShown) {
               std::vector<std::string>{"this equalizer has no effect: its compound has fewer than two children"});
 }
 
+TEST(Plan, usesDefaultsForAnEmptyInput) {
+    const ResolvedConfig c = resolved(kWall);
+    const FramePlan empty = planFrame(c, FrameInput{}), first = planFrame(c, firstFrame(c));
+    ASSERT_FALSE(empty.contexts.empty());
+    ASSERT_EQ(empty.channels.size(), first.channels.size());
+    ASSERT_EQ(empty.contexts.size(), first.contexts.size());
+    for (size_t i = 0; i < empty.contexts.size(); ++i) EXPECT_EQ(empty.contexts[i].area, first.contexts[i].area);
+}
+
 } // namespace mural::compound

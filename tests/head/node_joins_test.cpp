@@ -5,6 +5,7 @@
 #include "gl_opcodes.hpp"
 #include "nodes/head/results/reply_assembler.hpp"
 #include "nodes/head/frames/frame_tracker.hpp"
+#include "nodes/head/membership/kept_streams.hpp"
 #include "nodes/head/membership/rejoin_log.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
 #include "nodes/head/frames/picture_assembler.hpp"
@@ -134,7 +135,7 @@ size_t contextsIn(const RejoinLog::Snapshot& snapshot) {
 }
 
 TEST(RejoinLog, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
-    RejoinLog log(1 << 20);
+    RejoinLog log(1 << 20, makeCapturedStream);
     const auto makes = [&](uint32_t stream, uint32_t context) {
         log.append(stream, trace::PacketBuilder().context(context).swap(1, context).bytes());
     };
@@ -161,7 +162,7 @@ TEST(RejoinLog, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
 }
 
 TEST(RejoinLog, reportsOverflowUntilTheProgramsAreGone) {
-    RejoinLog log(1 << 20);
+    RejoinLog log(1 << 20, makeCapturedStream);
     const auto fits = [&] { return log.snapshot(log.pause(), Deadline::inMs(10'000)).ok(); };
     const std::vector<uint32_t> much(65536, 1); // a command without a rule: it stays in the log
     log.append(wire::streamOf(1, 0),

@@ -29,12 +29,12 @@ struct StartingNode {
 };
 
 struct LaunchOptions {
-    bool isNative = false;     // nodes run a program with the native API instead of `mural`
     std::string executable;    // path of `mural`, or of the program, on this machine
     std::string remoteMural;   // the same on other hosts
     std::string launchCommand; // prefix that runs a command on a host
     int minNodes = 0;          // the session starts with this many nodes; others have lateMs to connect; 0: all nodes
     int64_t lateMs = 5'000;
+    bool isNative = false; // nodes run a program with the native API instead of `mural`
 };
 
 // Call from a thread that outlives the nodes. Polls `cancelled`. Errors: fewer nodes than required have connected.

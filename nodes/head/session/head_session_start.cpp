@@ -233,7 +233,7 @@ Result<void> HeadSession::checkSize() {
 // The size that a program with the native API draws. 0 x 0: unknown.
 compound::PixelSize HeadSession::sizeOfWall() const {
     if (config_.width > 0) return {config_.width, config_.height};
-    const auto& balance = currentPlan().balance;
+    const auto balance = currentPlan()->balance;
     return balance ? balance->wall : compound::PixelSize{0, 0};
 }
 
