@@ -44,6 +44,9 @@ TEST(FrameRing, dropsTheOldestFrameWhenItIsFull) {
     for (uint32_t frame = 1; frame <= 10; ++frame) ring.finish(1, 1, frame, frame);
     EXPECT_EQ(ring.size(), 3u);
     EXPECT_EQ(framesOf(ring.since(0, 10 + kLater)), (std::vector<uint32_t>{8, 9, 10}));
+    EXPECT_EQ(framesOf(ring.since(0, 10 + kLater, 2)), (std::vector<uint32_t>{9, 10}));
+    EXPECT_TRUE(ring.since(0, 10 + kLater, 0).empty());
+    EXPECT_TRUE(ring.since(11, 10 + kLater, 2).empty());
 }
 
 TEST(FrameRing, returnsEachFrameOnceToAClientThatContinues) {

@@ -33,18 +33,21 @@ void HeadSession::addFramesOperation(ControlOperations& operations) {
     operations.add({"frames",
                     "",
                     "statistics of complete frames; the session records them until 10 s after the last request",
-                    {{"since", ControlArgument::Kind::Whole, false, "number of the first frame, from 1"}},
+                    {{"since", ControlArgument::Kind::Whole, false, "number of the first frame, from 1"},
+                     {"newest", ControlArgument::Kind::Whole, false, "leave all but this number of frames out"}},
                     [this](const Json& arguments) -> Result<Json> {
                         const auto since = arguments.value("since", int64_t{1});
                         if (since < 1) return Error{"since is the number of a frame; frames have numbers from 1 on"};
-                        return framesJson(static_cast<uint64_t>(since));
+                        const auto newest = arguments.value("newest", static_cast<int64_t>(FrameRing::kFrames));
+                        if (newest < 0) return Error{"newest is a number of frames, from 0 on"};
+                        return framesJson(static_cast<uint64_t>(since), static_cast<size_t>(newest));
                     }});
 }
 
-Json HeadSession::framesJson(uint64_t sinceFrame) {
+Json HeadSession::framesJson(uint64_t sinceFrame, size_t newest) {
     const int64_t nowNs = monotonicNowNs();
     if (statistics_.request(nowNs)) announceStatistics();
-    Json reply = framesReply(statistics_.since(sinceFrame, nowNs), sinceFrame);
+    Json reply = framesReply(statistics_.since(sinceFrame, nowNs, newest), sinceFrame);
     reply["kinds"] = wire::kSpanKindNames;
     reply["clocks"] = clocksJson(statistics_.clocks());
     reply["status"] = statusOf(status());

@@ -1,6 +1,7 @@
 #include "nodes/head/statistics/frame_ring.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace mural {
@@ -31,14 +32,16 @@ void FrameRing::finish(uint32_t client, uint32_t window, uint32_t frame, int64_t
     record.doneNs = nowNs;
 }
 
-std::vector<FrameRecord> FrameRing::since(uint64_t number, int64_t nowNs) const {
-    std::vector<FrameRecord> records;
-    for (const Entry& entry : entries_) {
-        if (entry.record.number < number) continue;
+std::vector<FrameRecord> FrameRing::since(uint64_t number, int64_t nowNs, size_t newest) const {
+    auto first = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.record.number >= number; });
+    const auto end = std::find_if(first, entries_.end(), [&](const Entry& entry) {
         const bool isSettled = entry.record.doneNs != 0 && nowNs - entry.record.doneNs >= kSettleNs;
-        if (!isSettled && nowNs - entry.beganNs < kPatienceNs) break;
-        records.push_back(entry.record);
-    }
+        return !isSettled && nowNs - entry.beganNs < kPatienceNs;
+    });
+    first = std::max(first, end - std::min(end - first, static_cast<std::ptrdiff_t>(newest)));
+    std::vector<FrameRecord> records;
+    records.reserve(static_cast<size_t>(end - first));
+    std::transform(first, end, std::back_inserter(records), [](const Entry& entry) { return entry.record; });
     return records;
 }
 

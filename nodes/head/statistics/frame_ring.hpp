@@ -24,8 +24,9 @@ public:
     void finish(uint32_t client, uint32_t window, uint32_t frame, int64_t nowNs);
     void clear() { entries_.clear(); }
 
-    // Returns the frames from this number on, in order, up to the first frame that may receive further tracks.
-    [[nodiscard]] std::vector<FrameRecord> since(uint64_t number, int64_t nowNs) const;
+    // Returns the frames from this number on, in order, up to the first frame that may receive further tracks. newest:
+    // limit of their number; older ones are left out.
+    [[nodiscard]] std::vector<FrameRecord> since(uint64_t number, int64_t nowNs, size_t newest = kFrames) const;
     [[nodiscard]] size_t size() const { return entries_.size(); }
 
 private:

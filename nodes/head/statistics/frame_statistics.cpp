@@ -72,9 +72,9 @@ void FrameStatistics::forgetClock(int node) {
     if (clock.errorNs() != 0) clock = NodeClock();
 }
 
-std::vector<FrameRecord> FrameStatistics::since(uint64_t number, int64_t nowNs) const {
+std::vector<FrameRecord> FrameStatistics::since(uint64_t number, int64_t nowNs, size_t newest) const {
     const std::lock_guard lock(mutex_);
-    return ring_.since(number, nowNs);
+    return ring_.since(number, nowNs, newest);
 }
 
 } // namespace mural

@@ -42,7 +42,8 @@ public:
     // Resets the clock of a node that starts again.
     void forgetClock(int node);
 
-    [[nodiscard]] std::vector<FrameRecord> since(uint64_t number, int64_t nowNs) const;
+    [[nodiscard]] std::vector<FrameRecord> since(uint64_t number, int64_t nowNs,
+                                                 size_t newest = FrameRing::kFrames) const;
 
 private:
     std::atomic<bool> isOn_{false};

@@ -79,8 +79,10 @@ Result<std::vector<nlohmann::json>> queryRunningSessions(const std::string& sess
     return states;
 }
 
-std::optional<nlohmann::json> queryFrames(const std::string& controlPath, uint64_t sinceFrame) {
-    return querySession(controlPath, "frames", {{"since", sinceFrame}});
+std::optional<nlohmann::json> queryFrames(const std::string& controlPath, uint64_t sinceFrame, int newest) {
+    nlohmann::json arguments{{"since", sinceFrame}};
+    if (newest > 0) arguments["newest"] = newest;
+    return querySession(controlPath, "frames", arguments);
 }
 
 } // namespace mural::cli

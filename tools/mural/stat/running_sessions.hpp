@@ -31,7 +31,8 @@ Result<std::vector<RunningSession>> findRunningSessions(const std::string& sessi
 Result<std::vector<nlohmann::json>> queryRunningSessions(const std::string& session = "");
 
 // Returns the statistics of the session's frames from this number on, and requests further ones for some seconds
-// (docs/reference/statistics.md). Empty: the session does not reply.
-std::optional<nlohmann::json> queryFrames(const std::string& controlPath, uint64_t sinceFrame);
+// (docs/reference/statistics.md). newest: limit of their number, which leaves older ones out; 0: none. Empty: the
+// session does not reply.
+std::optional<nlohmann::json> queryFrames(const std::string& controlPath, uint64_t sinceFrame, int newest = 0);
 
 } // namespace mural::cli

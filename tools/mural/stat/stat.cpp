@@ -24,8 +24,10 @@ namespace {
 
 constexpr double kOnceSeconds = 1.0; // between the snapshots of a single report
 constexpr int kExitNone = 1;
-constexpr std::chrono::milliseconds kPoll{200}; // between two requests for frames; the head keeps 600
-constexpr int64_t kNoFrameMs = 10'000;          // limit for the next frame of a trace
+constexpr std::chrono::milliseconds kPoll{200};       // between two requests for frames; the head keeps 600
+constexpr std::chrono::milliseconds kMeansPoll{2000}; // the same for means; statistics stay on for 10 s
+constexpr int kMeansFrames = 120;      // of which means are taken; all frames of fast programs cost the head 3 %
+constexpr int64_t kNoFrameMs = 10'000; // limit for the next frame of a trace
 
 int fail(const std::string& why, int status) {
     fmt::print(stderr, "mural stat: {}\n", why);
@@ -52,10 +54,11 @@ void print(const std::vector<nlohmann::json>& sessions, bool asJson) {
 
 void sleepFor(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-// Adds the frames that have completed since the last call. Returns false if the session has ended.
-Result<bool> collect(const RunningSession& session, SessionFrames& frames) {
+// Adds the frames that have completed since the last call. newest: as in queryFrames(). Returns false if the session
+// has ended.
+Result<bool> collect(const RunningSession& session, SessionFrames& frames, int newest = 0) {
     do {
-        auto reply = queryFrames(session.controlPath, frames.next);
+        auto reply = queryFrames(session.controlPath, frames.next, newest);
         if (!reply) return false;
         if (auto added = addReply(frames, *reply); !added) return added.error();
     } while (frames.hasMore);
@@ -104,11 +107,16 @@ Result<std::vector<SessionFrames>> collectAll(const std::string& session, double
     if (!sessions) return sessions.error();
     std::vector<SessionFrames> all(sessions->size());
     const Deadline deadline = Deadline::inMs(static_cast<int64_t>(seconds * 1000));
+    const auto collectFrom = [&](size_t i, int newest) { return collect((*sessions)[i], all[i], newest); };
+    for (size_t i = 0; i < all.size(); ++i) { // switches statistics on
+        if (auto alive = collectFrom(i, 1); !alive) return alive.error();
+        all[i].frames.clear(); // of the time before
+    }
     do {
-        for (size_t i = 0; i < all.size(); ++i)
-            if (auto alive = collect((*sessions)[i], all[i]); !alive) return alive.error();
         std::this_thread::sleep_for(
-            std::min<std::chrono::nanoseconds>(kPoll, std::chrono::nanoseconds(deadline.leftNs())));
+            std::min<std::chrono::nanoseconds>(kMeansPoll, std::chrono::nanoseconds(deadline.leftNs())));
+        for (size_t i = 0; i < all.size(); ++i)
+            if (auto alive = collectFrom(i, kMeansFrames); !alive) return alive.error();
     } while (!deadline.passed());
     std::erase_if(all, [](const SessionFrames& frames) { return !frames.status.is_object(); });
     return all;
