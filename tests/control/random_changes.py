@@ -3,8 +3,8 @@
 
 random_changes.py --build build/release [--cases exact,killed] [--list]
 RANDOM_CHANGES=200 and RANDOM_SEEDS=1,2,3 in the environment change the number of changes and the seeds. A
-slow machine performs fewer changes, unless RANDOM_CHANGES is set. Each seed prints the head's memory after equally many
-changes, and its slope in the second half.
+slow machine performs fewer changes, unless RANDOM_CHANGES is set. Each seed prints the head's own memory, without rings that
+it shares with other processes, after equally many changes, and its slope in the second half.
 """
 
 import json
@@ -35,9 +35,9 @@ PLANS = [("--balance", "auto", "--local-nodes", "3"), ("--tiles", "2x1"), ("--ba
 SAMPLES = 20  # printed values of the memory
 
 
-def memory_kib(pid):
+def memory_kib(pid, name="VmRSS"):
     with open("/proc/%d/status" % pid, encoding="ascii") as file:
-        return next(int(line.split()[1]) for line in file if line.startswith("VmRSS"))
+        return next(int(line.split()[1]) for line in file if line.startswith(name))
 
 
 def memory_mib(pid):
@@ -45,13 +45,13 @@ def memory_mib(pid):
 
 
 def print_memory(seed, kib):
-    """kib: the memory after each change."""
+    """kib: the head's own memory after each change."""
     shown = ["%.1f" % (kib[i] / 1024) for i in range(0, len(kib), max(1, len(kib) // SAMPLES))]
     late = kib[len(kib) // 2:]
     middle = (len(late) - 1) / 2
     spread = sum((i - middle) ** 2 for i in range(len(late)))
     slope = sum((i - middle) * value for i, value in enumerate(late)) / spread if spread else 0
-    print("    seed %d: head MiB after changes: %s; %.0f KiB per change in the second half" % (seed, " ".join(shown), slope))
+    print("    seed %d: own MiB of the head: %s; %.0f KiB per change in the second half" % (seed, " ".join(shown), slope))
 
 
 def end_recording(context, run):
@@ -132,7 +132,7 @@ def perform(context, seed, kills):
                 if not frames_go_on(context, run):
                     return "no frames after %s, change %d of seed %d: %s" % (" ".join(words), count, seed, " | ".join(run.standard_error[-5:]))
                 count += 1
-                memory.append(memory_kib(head))
+                memory.append(memory_kib(head, "RssAnon"))
                 is_half = count > CHANGES // 2 or (2 * count >= LEAST_CHANGES and time.monotonic() > began + SECONDS / 2)
                 if early is None and is_half:
                     end_recording(context, run)
