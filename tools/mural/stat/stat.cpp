@@ -26,7 +26,7 @@ constexpr double kOnceSeconds = 1.0; // between the snapshots of a single report
 constexpr int kExitNone = 1;
 constexpr std::chrono::milliseconds kPoll{200};       // between two requests for frames; the head keeps 600
 constexpr std::chrono::milliseconds kMeansPoll{2000}; // the same for means; statistics stay on for 10 s
-constexpr int kMeansFrames = 120;      // of which means are taken; all frames of fast programs cost the head 3 %
+constexpr int kMeansFrames = 120;      // of which means are taken, so that fast programs cost no more than others
 constexpr int64_t kNoFrameMs = 10'000; // limit for the next frame of a trace
 
 int fail(const std::string& why, int status) {
