@@ -156,7 +156,7 @@ def slabs_blend(context):
                 difference.add_pictures(a, b, "frame %d" % number)
             quality = min(pictures.decibels(a, b) for a, b in zip(wanted, shown))
             print("%s: largest difference %d, %.1f dB" % (options, difference.largest, quality))
-            if difference.largest > 4 or quality < 54:
+            if difference.largest > 3 or quality < 54:
                 return "%s: largest difference %d, %s, %.1f dB" % (options, difference.largest, difference.place, quality)
         return None
 
