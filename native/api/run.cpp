@@ -11,7 +11,8 @@ namespace mural {
 namespace {
 
 constexpr int kFailed = 1, kNoSession = 2;
-constexpr int64_t kIdleMs = 10; // between calls of update() that draw nothing
+constexpr int64_t kIdleMs = 10;       // between calls of update() that draw nothing
+constexpr int64_t kFinishMs = 60'000; // for the last frames
 
 void complain(const char* program, const std::string& text) { std::fprintf(stderr, "%s: %s\n", program, text.c_str()); }
 
@@ -29,7 +30,7 @@ Result<void> drawFrames(Session& session, Application& application, const char* 
         clock.sinceLast = static_cast<double>(nowNs - lastNs) / kNsPerS;
         lastNs = nowNs;
         switch (application.update(session, clock)) {
-        case Next::End: return session.finishAll();
+        case Next::End: return session.finishAll(Deadline::inMs(kFinishMs));
         case Next::Wait: session.wait(Deadline::inMs(kIdleMs)); break;
         case Next::Frame: {
             auto frame = session.startFrame();

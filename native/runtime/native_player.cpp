@@ -115,7 +115,11 @@ NativePlayer::Client& NativePlayer::clientOf(uint32_t id) {
         if (out_.objectRequest) out_.objectRequest(id, message);
     };
     ClientObjects::Await await;
-    if (out_.readAhead) await = [this] { return out_.readAhead(); };
+    if (out_.readAhead)
+        await = [this] {
+            isEnding_ = isEnding_ || !out_.readAhead();
+            return !isEnding_;
+        };
     auto made = std::make_unique<Client>(static_cast<uint32_t>(config_.node), std::move(send), std::move(await));
     return *clients_.emplace(id, std::move(made)).first->second;
 }
@@ -163,6 +167,7 @@ bool NativePlayer::record(Client& client, uint32_t clientId, uint16_t opcode, st
 void NativePlayer::clientGone(uint32_t client) {
     clients_.erase(client);
     lastPart_.reset();
+    isEnding_ = false; // another program may follow
 }
 
 void NativePlayer::onSwap(uint32_t clientId, Client& client, uint32_t window, uint32_t frame) {
@@ -340,6 +345,7 @@ void NativePlayer::runTask(const char* name, const std::function<void()>& task) 
 }
 
 void NativePlayer::reportOnce(const std::string& text) {
+    if (isEnding_) return log::debug(log::Topic::Replay, text); // objects are missing because the session ends
     if (reported_.size() < kMaxReports && reported_.insert(text).second) log::warning(log::Topic::Replay, text);
 }
 

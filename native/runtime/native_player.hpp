@@ -81,6 +81,7 @@ private:
     uint64_t previewed_ = 0; // packets whose objects are known
     PlayerCounts counts_;
     bool skips_ = false;      // draws no frames
+    bool isEnding_ = false;   // no more objects arrive: the program or the session has ended
     bool isComposing_ = true; // false: in resync, no composition before resetShares()
     std::optional<ViewportAssignment> areas_;
     Range share_;

@@ -126,6 +126,17 @@ def restarted_nodes_are_exact(context):
 
 
 @cases.case
+def sessions_end_while_nodes_wait_for_objects(context):
+    """--frames ends the program, whose objects the nodes then no longer receive."""
+    for tries in range(5):
+        began = time.monotonic()
+        wrong, _, lines = draw(context, "--db 2 --frames %d" % (tries + 1), frames=0)
+        if wrong or any("lost" in line or "thrown" in line for line in lines) or time.monotonic() - began > 8:
+            return "%s after %.1f s; %s" % (wrong, time.monotonic() - began, " | ".join(lines))
+    return None
+
+
+@cases.case
 def faults_of_programs_are_reported(context):
     for fault, words in (("throw", "Renderer::draw has thrown: thrown on purpose"), ("gl", "Renderer::draw leaves the GL error 0x0500"),
                          ("layout", "Scene")):
@@ -149,7 +160,7 @@ def excluded_options_are_refused(context):
             if status != 2 or not any(words in line for line in run.standard_error):
                 return "%s: status %s, %s" % (options, status, " | ".join(run.standard_error))
     with context.run([context.program("immediate"), "--frames", "2"], ["--node-program", program(context), "--display", "none"]) as run:
-        if run.status() is None or not any("native API only" in line for line in run.standard_error + run.standard_output):
+        if run.status() is None or not any("did not use the native API" in line for line in run.standard_error + run.standard_output):
             return "a captured program in a session of native nodes: %s" % " | ".join(run.standard_error)
     return None
 

@@ -29,7 +29,7 @@ struct ShareOptions {
     // credit bounds the lag.
     uint32_t mostUnread = 0;
     // Name for lookups and messages, at most 255 bytes.
-    std::string name;
+    std::string name = {};
 };
 
 } // namespace mural

@@ -147,6 +147,8 @@ private:
         const std::string& name = run_.program.front();
         if (everClients_) return name + " created a GL context but showed no picture (no buffer swap)";
         const bool failed = program_.exitStatus() != 0 && !program_.stopRequested();
+        if (!run_.config.nodeProgram.empty() && !failed)
+            return name + " did not use the native API; only such programs draw on the nodes of --node-program";
         if (std::string bypass = bypass_.describeEnded(failed); !bypass.empty()) return bypass;
         if (failed)
             return name + " ended before it created a GL context (" + program_.describeEnd() +
