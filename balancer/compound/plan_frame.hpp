@@ -6,7 +6,8 @@
 
 namespace mural::compound {
 
-// Missing values of the input have their defaults; missing sizes are those of displaySizes(config). The plan may reuse the memory of an old plan; the contents of `old` do not matter.
+// Missing values of the input have their defaults; missing sizes are those of displaySizes(config). The plan may
+// reuse the memory of an old plan; the contents of `old` do not matter.
 FramePlan planFrame(const ResolvedConfig& config, const FrameInput& input, FramePlan old = {});
 
 } // namespace mural::compound

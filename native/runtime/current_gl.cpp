@@ -17,22 +17,22 @@ Result<ShaderCalls> ShaderCalls::load() {
     if (!current) return Error{"no renderer runs in this thread; call this function from a task of the Renderer"};
     ShaderCalls calls;
     std::string missing;
-    const auto find = [&](const char* name, auto& call) {
+    const auto load = [&](const char* name, auto& call) {
         call = reinterpret_cast<std::remove_reference_t<decltype(call)>>(currentGlProc(name));
         if (!call && missing.empty()) missing = name;
     };
-    find("glCreateShader", calls.createShader);
-    find("glShaderSource", calls.shaderSource);
-    find("glCompileShader", calls.compileShader);
-    find("glGetShaderiv", calls.getShaderiv);
-    find("glGetShaderInfoLog", calls.getShaderInfoLog);
-    find("glDeleteShader", calls.deleteShader);
-    find("glCreateProgram", calls.createProgram);
-    find("glAttachShader", calls.attachShader);
-    find("glLinkProgram", calls.linkProgram);
-    find("glGetProgramiv", calls.getProgramiv);
-    find("glGetProgramInfoLog", calls.getProgramInfoLog);
-    find("glDeleteProgram", calls.deleteProgram);
+    load("glCreateShader", calls.createShader);
+    load("glShaderSource", calls.shaderSource);
+    load("glCompileShader", calls.compileShader);
+    load("glGetShaderiv", calls.getShaderiv);
+    load("glGetShaderInfoLog", calls.getShaderInfoLog);
+    load("glDeleteShader", calls.deleteShader);
+    load("glCreateProgram", calls.createProgram);
+    load("glAttachShader", calls.attachShader);
+    load("glLinkProgram", calls.linkProgram);
+    load("glGetProgramiv", calls.getProgramiv);
+    load("glGetProgramInfoLog", calls.getProgramInfoLog);
+    load("glDeleteProgram", calls.deleteProgram);
     if (!missing.empty()) return Error{"the GL driver lacks " + missing + "; shaders require OpenGL 2.0"};
     return calls;
 }
