@@ -30,7 +30,10 @@ Result<void> drawFrames(Session& session, Application& application, const char* 
         clock.sinceLast = static_cast<double>(nowNs - lastNs) / kNsPerS;
         lastNs = nowNs;
         switch (application.update(session, clock)) {
-        case Next::End: return session.finishAll(Deadline::inMs(kFinishMs));
+        case Next::End: {
+            auto finished = session.finishAll(Deadline::inMs(kFinishMs));
+            return finished || !session.isRunning() ? Result<void>() : finished;
+        }
         case Next::Wait: session.wait(Deadline::inMs(kIdleMs)); break;
         case Next::Frame: {
             auto frame = session.startFrame();
@@ -47,10 +50,10 @@ Result<void> drawFrames(Session& session, Application& application, const char* 
     return {};
 }
 
-Result<void> runApplication(Session& session, Application& application, int argc, char** argv) {
+// Runs a function of the program. An exception becomes an error.
+template <class Function> Result<void> guarded(Function&& function) {
     try {
-        auto started = application.start(session, argc, argv);
-        return started ? drawFrames(session, application, argc > 0 ? argv[0] : "mural") : started;
+        return function();
     } catch (const std::exception& e) {
         return Error{std::string("the application has thrown: ") + e.what()};
     } catch (...) {
@@ -68,15 +71,20 @@ int run(int argc, char** argv, const Program& program) {
         complain(name, session.error().message);
         return kNoSession;
     }
-    const auto application = program.application ? program.application() : nullptr;
-    if (!application) {
-        complain(name, "the program makes no Application; set Program::application");
-        return kFailed;
-    }
-    const auto ran = runApplication(**session, *application, argc, argv);
+    std::unique_ptr<Application> application;
+    auto ran = guarded([&]() -> Result<void> {
+        application = program.application ? program.application() : nullptr;
+        if (!application) return Error{"the program makes no Application; set Program::application"};
+        auto started = application->start(**session, argc, argv);
+        return started ? drawFrames(**session, *application, name) : started;
+    });
     if (!ran) complain(name, ran.error().message);
-    application->end(**session);
-    return ran ? 0 : kFailed;
+    const auto ended = guarded([&] {
+        if (application) application->end(**session);
+        return Result<void>();
+    });
+    if (!ended) complain(name, ended.error().message);
+    return ran && ended ? 0 : kFailed;
 }
 
 } // namespace mural

@@ -14,8 +14,9 @@ class ClientObjects final : private objects::MessageSink {
 public:
     // Sends a message to the application. Any thread.
     using Send = std::function<void(std::span<const std::byte> message)>;
-    // Receives messages while the player's thread waits for an object. Returns false if none will come.
-    using Await = std::function<bool()>;
+    // Receives messages until the deadline, while the player's thread waits for an object. Returns false if none will
+    // come.
+    using Await = std::function<bool(Deadline)>;
     ClientObjects(uint32_t node, Send send, Await await);
 
     // Takes the arguments of a kOpObject record. Errors: a damaged message.

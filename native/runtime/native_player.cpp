@@ -29,6 +29,17 @@ compositor::DepthFunction functionOf(Composition::DepthTest test) {
     return compositor::DepthFunction::Less;
 }
 
+// Runs a function of the program. An exception becomes an error.
+template <class Function> Result<void> guarded(const char* name, Function&& function) {
+    try {
+        return function();
+    } catch (const std::exception& e) {
+        return Error{std::string(name) + " has thrown: " + e.what()};
+    } catch (...) {
+        return Error{std::string(name) + " has thrown an unknown exception"};
+    }
+}
+
 Matrix4 headOf(const wire::NativeFrame& frame) {
     Matrix4 head;
     for (size_t i = 0; i < 12; ++i) head.m[i / 4][i % 4] = frame.head[i];
@@ -50,7 +61,15 @@ Result<std::unique_ptr<StreamPlayer>> NativePlayer::open(std::unique_ptr<gl::Pla
     player->skips_ = config.skips;
     player->isComposing_ = !config.isResyncing;
     player->areas_ = config.areas;
-    auto target = GlTarget::open(std::move(platform), player->renderer_->wish());
+    GlWish wish;
+    if (auto asked = guarded("Renderer::wish",
+                             [&] {
+                                 wish = player->renderer_->wish();
+                                 return Result<void>();
+                             });
+        !asked)
+        return asked.error();
+    auto target = GlTarget::open(std::move(platform), wish);
     if (!target) return target.error();
     player->target_ = std::move(*target);
     setCurrentTarget(player->target_.get());
@@ -59,14 +78,7 @@ Result<std::unique_ptr<StreamPlayer>> NativePlayer::open(std::unique_ptr<gl::Pla
         return bytes ? std::string(reinterpret_cast<const char*>(bytes)) : std::string();
     };
     player->pipe_ = {config.node, text(GL_RENDERER), text(GL_VERSION)};
-    Result<void> started;
-    try {
-        started = player->renderer_->start(player->pipe_);
-    } catch (const std::exception& e) {
-        started = Error{std::string("Renderer::start has thrown: ") + e.what()};
-    } catch (...) {
-        started = Error{"Renderer::start has thrown an unknown exception"};
-    }
+    auto started = guarded("Renderer::start", [&] { return player->renderer_->start(player->pipe_); });
     if (!started) return started.error();
     player->hasStarted_ = true;
     return std::unique_ptr<StreamPlayer>(std::move(player));
@@ -116,8 +128,8 @@ NativePlayer::Client& NativePlayer::clientOf(uint32_t id) {
     };
     ClientObjects::Await await;
     if (out_.readAhead)
-        await = [this] {
-            isEnding_ = isEnding_ || !out_.readAhead();
+        await = [this](Deadline deadline) {
+            isEnding_ = isEnding_ || out_.readAhead(deadline) == ReadAhead::Ended;
             return !isEnding_;
         };
     auto made = std::make_unique<Client>(static_cast<uint32_t>(config_.node), std::move(send), std::move(await));
@@ -216,7 +228,9 @@ void NativePlayer::drawFrame(Client& client, uint32_t clientId, const FramePart&
     view.head = headOf(client.frame);
     const Frame info{client.frame.number, client.frame.seconds, client.frame.seed};
     const bool isSame = lastPart_ && isEqualPart(*lastPart_, part);
-    TaskState state(part, view, info, isSame, renderer_->composition(), *target_, client.objects.reader(),
+    Composition composition;
+    runTask("Renderer::composition", [&] { composition = renderer_->composition(); });
+    TaskState state(part, view, info, isSame, composition, *target_, client.objects.reader(),
                     [this](const std::string& text) { reportOnce(text); });
     RenderTask task(state);
     runTask("Renderer::frameStart", [&] { renderer_->frameStart(pipe_, info); });
@@ -272,13 +286,14 @@ void NativePlayer::compose(uint32_t clientId, const FramePart& part, uint32_t fr
 std::vector<int> NativePlayer::blendOrder(TaskState& state) {
     RenderTask task(state);
     std::vector<double> distances(ranges_.size());
+    bool isComplete = false;
     runTask("Renderer::order", [&] {
         for (size_t i = 0; i < ranges_.size(); ++i) distances[i] = renderer_->order(task, ranges_[i]);
-        if (!std::ranges::all_of(distances, [](double d) { return std::isfinite(d); })) {
-            std::ranges::fill(distances, 0); // the ranges then decide, on all nodes alike
+        if (!std::ranges::all_of(distances, [](double d) { return std::isfinite(d); }))
             throw std::range_error("a position that is not finite");
-        }
+        isComplete = true;
     });
+    if (!isComplete) std::ranges::fill(distances, 0); // the ranges then decide, on all nodes alike
     std::vector<int> order(ranges_.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
     const auto isBehind = [&](int a, int b) {
@@ -328,13 +343,11 @@ const std::byte* NativePlayer::pixelsOf(const FramePart& part, const PixelViewpo
 }
 
 void NativePlayer::runTask(const char* name, const std::function<void()>& task) {
-    try {
+    const auto done = guarded(name, [&] {
         task();
-    } catch (const std::exception& e) {
-        reportOnce(std::string(name) + " has thrown: " + e.what());
-    } catch (...) {
-        reportOnce(std::string(name) + " has thrown an unknown exception");
-    }
+        return Result<void>();
+    });
+    if (!done) reportOnce(done.error().message);
     const GLenum error = target_ ? target_->gl().getError() : GLenum{GL_NO_ERROR};
     if (error == GL_NO_ERROR) return;
     ++counts_.glErrors;

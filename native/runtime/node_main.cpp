@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <exception>
+#include <exception>
 #include <string_view>
 
 #include "native/runtime/native_player.hpp"
@@ -46,7 +48,12 @@ std::optional<int> runNodeIfRequested(int argc, char** argv, const Program& prog
     return runNode(*options,
                    [&program](std::unique_ptr<gl::Platform> platform, const PlayerConfig& config,
                               PlayerOutputs outputs) -> Result<std::unique_ptr<StreamPlayer>> {
-                       auto renderer = program.renderer ? program.renderer() : nullptr;
+                       std::unique_ptr<Renderer> renderer;
+                       try {
+                           if (program.renderer) renderer = program.renderer();
+                       } catch (const std::exception& e) {
+                           return Error{std::string("the constructor of the Renderer has thrown: ") + e.what()};
+                       }
                        if (!renderer) return Error{"the program makes no Renderer; set Program::renderer"};
                        return NativePlayer::open(std::move(platform), config, std::move(outputs), std::move(renderer));
                    });

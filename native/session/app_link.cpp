@@ -29,35 +29,38 @@ Result<std::unique_ptr<AppLink>> AppLink::connect(const std::string& session, Ta
 AppLink::AppLink(std::unique_ptr<CaptureLink> link)
     : link_(std::move(link)), writer_([this](std::span<const std::byte> packet) { return send(packet); }) {}
 
-void AppLink::keep(const Result<void>& result) {
-    if (!result && failure_) failure_ = result;
-}
-
 void AppLink::sendObject(uint32_t node, std::span<const std::byte> message) {
-    if (message.size() > wire::kMaxObjectBytes)
-        return keep(Error{"an object has more than 1 GiB; use a Blob for its data"});
-    wire::splitIntoRecords(node, message, [this](std::span<const std::byte> record) { keep(writer_.add(record)); });
+    wire::splitIntoRecords(node, message, [this](std::span<const std::byte> record) { writer_.add(record); });
+    // Bounds the memory of packets that the nodes do not accept.
+    constexpr size_t kMaxWaitingBytes = size_t{64} << 20;
+    constexpr int64_t kPatienceMs = 60'000;
+    if (writer_.waitingBytes() > kMaxWaitingBytes && deadline_.passed()) deadline_ = Deadline::inMs(kPatienceMs);
+    (void)writer_.sendComplete();
 }
 
-Result<void> AppLink::sendWindow(const wire::WindowConfig& window) {
+void AppLink::sendWindow(const wire::WindowConfig& window) {
     std::byte arguments[sizeof(uint32_t) + sizeof window];
     std::memcpy(arguments, &kWindow, sizeof kWindow);
     std::memcpy(arguments + sizeof kWindow, &window, sizeof window);
-    return writer_.add(wire::kOpWindow, arguments);
+    writer_.add(wire::kOpWindow, arguments);
 }
 
 Result<void> AppLink::sendFrame(const wire::NativeFrame& frame, uint32_t number) {
+    if (auto sent = flush(); !sent) return sent;
     const uint32_t swap[2] = {kWindow, number};
-    keep(writer_.add(wire::kOpFrame, std::as_bytes(std::span(&frame, 1))));
-    keep(writer_.add(wire::kOpSwap, std::as_bytes(std::span(swap))));
-    auto sent = flush();
-    if (sent) link_->submitted(number);
-    return sent;
+    writer_.add(wire::kOpFrame, std::as_bytes(std::span(&frame, 1)));
+    writer_.add(wire::kOpSwap, std::as_bytes(std::span(swap)));
+    const auto sent = flush(); // after the deadline, the next call sends it
+    if (!sent && !isAlive()) return sent;
+    link_->submitted(number);
+    return {};
 }
 
-Result<void> AppLink::flush() {
-    keep(writer_.flush());
-    return std::exchange(failure_, {});
+Result<void> AppLink::flush() { return writer_.flush(); }
+
+void AppLink::serve() {
+    (void)link_->unanswered();
+    if (served_) served_();
 }
 
 // Requests are not served here: their replies would be written between the records of a message.
@@ -74,12 +77,13 @@ Result<void> AppLink::send(std::span<const std::byte> packet) {
 
 template <class Condition>
 Result<void> AppLink::await(const std::atomic<uint32_t>& word, const char* what, Condition condition) {
+    serve(); // also if nothing is waited for: nodes request objects ahead of their use
     while (true) {
         const uint32_t seen = word.load();
         if (condition()) return {};
-        (void)link_->unanswered(); // serves requests
+        serve();
         if (!isAlive()) return Error{"the session is over"};
-        if (auto sent = flush(); !sent) return sent;
+        if (auto sent = flush(); !sent) return sent; // replies to the requests
         if (deadline_.passed()) return Error{std::string(what) + "; see mural stat"};
         futexWait(word, seen, deadline_.leftNs(kSliceNs));
     }
@@ -95,10 +99,10 @@ Result<void> AppLink::awaitDone(uint32_t frame) {
                  [&] { return static_cast<int32_t>(link_->framesWord().load() - frame) >= 0; });
 }
 
-void AppLink::serve(Deadline deadline) {
+void AppLink::serveUntil(Deadline deadline) {
     while (isAlive()) {
         const uint32_t seen = link_->answersWord().load();
-        (void)link_->unanswered();
+        serve();
         if (!flush() || deadline.passed()) return;
         futexWait(link_->answersWord(), seen, deadline.leftNs(kSliceNs));
     }

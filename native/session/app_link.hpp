@@ -30,12 +30,16 @@ public:
     // Deadline of all waits until the next call.
     void setDeadline(Deadline deadline) { deadline_ = deadline; }
 
-    // The records of objects. An error is kept for finishFrame().
+    // Called whenever messages of nodes were taken.
+    void onServed(std::function<void()> served) { served_ = std::move(served); }
+
+    // The records of objects. Nothing is dropped: what the nodes do not accept now is sent later.
     void toAll(std::span<const std::byte> message) override { sendObject(wire::kAllNodes, message); }
     void toOne(objects::PeerId node, std::span<const std::byte> message) override { sendObject(node, message); }
 
-    Result<void> sendWindow(const wire::WindowConfig& window);
-    // Sends the end of a frame and everything before it. Errors: an earlier record could not be sent; the deadline.
+    void sendWindow(const wire::WindowConfig& window);
+    // Sends everything before the frame, and then the frame. Errors: the deadline; the session is over. The frame was
+    // not sent then.
     Result<void> sendFrame(const wire::NativeFrame& frame, uint32_t number);
     // Sends everything so far.
     Result<void> flush();
@@ -44,20 +48,20 @@ public:
     // Waits until all nodes have drawn this frame. Serves requests meanwhile.
     Result<void> awaitDone(uint32_t frame);
     // Serves requests until the deadline.
-    void serve(Deadline deadline);
+    void serveUntil(Deadline deadline);
 
 private:
     explicit AppLink(std::unique_ptr<CaptureLink> link);
     void sendObject(uint32_t node, std::span<const std::byte> message);
     Result<void> send(std::span<const std::byte> packet);
-    void keep(const Result<void>& result);
+    void serve();
     template <class Condition>
     Result<void> await(const std::atomic<uint32_t>& word, const char* what, Condition condition);
 
     std::unique_ptr<CaptureLink> link_;
     PacketWriter writer_;
     Deadline deadline_ = Deadline::never();
-    Result<void> failure_; // the first one since the last flush()
+    std::function<void()> served_;
 };
 
 } // namespace mural::native

@@ -66,7 +66,11 @@ public:
         window.doubleBuffer = 1;
         for (int i = 0; i < 12; ++i) frame_.head[i] = i % 5 == 0 ? 1 : 0; // three rows of the identity
         startNs_ = monotonicNowNs();
-        return link_->sendWindow(window);
+        link_->sendWindow(window);
+        // All objects are in the stream from its beginning on, so a node knows that other references are invalid.
+        link_->toAll(objects::encode(objects::CatalogueEndMessage{}).bytes());
+        link_->onServed([this] { writer_->tick(monotonicNowNs()); });
+        return {};
     }
     ~Impl() {
         states_.clear();
@@ -95,7 +99,7 @@ public:
     }
     void wait(Deadline deadline) {
         link_->setDeadline(deadline);
-        link_->serve(deadline);
+        link_->serveUntil(deadline);
     }
     void setHead(const Matrix4& pose) {
         for (const auto& row : pose.m)
@@ -118,7 +122,6 @@ private:
         constexpr int kMaxComplaints = 10;
         if (auto taken = writer_->input(node, message, monotonicNowNs()); !taken && complaints_++ < kMaxComplaints)
             std::fprintf(stderr, "mural: %s\n", taken.error().message.c_str());
-        writer_->tick(INT64_MAX); // answers at once
     }
 
     std::set<uint32_t> readers_;
@@ -149,6 +152,9 @@ void Session::addState(std::type_index type, const std::string& name, std::uniqu
 }
 Result<std::unique_ptr<SharedObject>> Session::shareAny(const archive::TypeLayout& layout,
                                                         const ShareOptions& options) {
+    if (options.mostUnread > 0)
+        return Error{"cannot share object \"" + options.name +
+                     "\" with mostUnread: in a session, the latency bounds how far nodes are behind"};
     return impl_->writer_->shareAny(layout, options);
 }
 

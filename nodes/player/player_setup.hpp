@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/clock.hpp"
 #include "common/base/picture_format.hpp"
 #include "common/geometry/pixel_viewport.hpp"
 #include "common/geometry/tile_grid.hpp"
@@ -59,6 +60,12 @@ struct PlayerConfig {
     PlayerLimits limits;
 };
 
+enum class ReadAhead : uint8_t {
+    Received,
+    Nothing, // no packet came before the deadline
+    Ended,   // the program or the session has ended: no packet of this program follows
+};
+
 // Outputs of the player; called on its thread.
 struct PlayerOutputs {
     // Part of a reply; `last` closes this node's part.
@@ -94,8 +101,8 @@ struct PlayerOutputs {
     // `order`: see PictureComposer::compose.
     std::function<PixelViewport(PicturePart&, const CompositeRule&, const std::vector<int>& order)> composeParts;
     // Reads the next packet of the stream while the player plays an earlier one, and passes it to
-    // StreamPlayer::preview. Blocks until there is one. Returns false if none will come.
-    std::function<bool()> readAhead;
+    // StreamPlayer::preview. Waits for it until the deadline.
+    std::function<ReadAhead(Deadline)> readAhead;
     // A message about distributed objects to the program (native API).
     std::function<void(uint32_t client, std::span<const std::byte>)> objectRequest;
     // Driver events of a program's context.

@@ -129,12 +129,29 @@ Result<void> HeadConnection::decodeBatches(uint64_t cacheBytes, const std::strin
 }
 
 Result<wire::PacketHeader> HeadConnection::next(std::span<const std::byte>& payload) {
+    auto header = nextBefore(payload, Deadline::never());
+    if (!header) return header.error();
+    return *header.value(); // without a deadline there is a packet or an error
+}
+
+Result<std::optional<wire::PacketHeader>> HeadConnection::nextBefore(std::span<const std::byte>& payload,
+                                                                     Deadline deadline) {
+    const bool isTimed = deadline.leftNs() != INT64_MAX;
     wire::PacketHeader header{};
     while (true) {
         auto more = nextOfBatch(header, payload);
-        if (more && more.value()) return header;
+        if (more && more.value()) return std::optional(header);
         if (more) {
-            if (!deltaDecoder_) return readPacket(payload);
+            if (isTimed) {
+                auto begun = awaitFirst(deadline);
+                if (!begun) return begun.error();
+                if (!begun.value()) return std::optional<wire::PacketHeader>();
+            }
+            if (!deltaDecoder_) {
+                auto packet = readPacket(payload);
+                if (!packet) return packet.error();
+                return std::optional(packet.value());
+            }
             auto head = readBatch();
             if (!head) return head.error();
             if (const auto opened = openBatch(head.value()); !opened) more = opened.error();
@@ -166,7 +183,23 @@ Result<void> HeadConnection::openBatch(delta::BatchHead head) {
 // Waits for the first bytes of a packet or batch.
 Result<void> HeadConnection::readFirst(std::span<std::byte> bytes) {
     const SpanScope waits(SpanKind::WaitPackets);
-    return line().read(bytes, Deadline::never());
+    if (first_ && !bytes.empty()) {
+        bytes.front() = *std::exchange(first_, std::nullopt);
+        bytes = bytes.subspan(1);
+    }
+    return bytes.empty() ? Result<void>() : line().read(bytes, Deadline::never());
+}
+
+// Returns false if nothing comes before the deadline.
+Result<bool> HeadConnection::awaitFirst(Deadline deadline) {
+    if (first_) return true;
+    const SpanScope waits(SpanKind::WaitPackets);
+    std::byte byte{};
+    const auto got = line().read(std::span(&byte, 1), deadline);
+    if (!got && line().timedOut()) return false;
+    if (!got) return got.error();
+    first_ = byte;
+    return true;
 }
 
 Result<wire::PacketHeader> HeadConnection::readPacket(std::span<const std::byte>& payload) {

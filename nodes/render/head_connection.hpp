@@ -39,6 +39,8 @@ public:
     // Returns the next packet; its payload is valid until the next call. Errors: the head is gone; invalid data, which
     // has been reported to the head.
     Result<wire::PacketHeader> next(std::span<const std::byte>& payload);
+    // The same, but returns nothing if no packet begins before the deadline.
+    Result<std::optional<wire::PacketHeader>> nextBefore(std::span<const std::byte>& payload, Deadline deadline);
 
     // Sends one message in up to three parts, immediately. Thread-safe. Errors set `broken()`, which ends the node.
     void send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {});
@@ -64,6 +66,8 @@ private:
     Result<wire::PacketHeader> readPacket(std::span<const std::byte>& payload);
     Result<delta::BatchHead> readBatch();
     Result<void> readFirst(std::span<std::byte> bytes);
+    Result<bool> awaitFirst(Deadline deadline);
+    std::optional<std::byte> first_; // of the next packet or batch, already read
     Result<void> readPayload(uint32_t sizeBytes, uint32_t maxBytes);
     Result<bool> nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload);
     Result<void> openBatch(delta::BatchHead head);

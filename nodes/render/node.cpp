@@ -80,22 +80,44 @@ private:
         std::vector<std::byte> payload;
     };
 
-    // Reads one packet for PlayerOutputs::readAhead. Returns false if the player's program or the session has ended.
-    bool readAhead() {
+    // Reads a packet for PlayerOutputs::readAhead.
+    ReadAhead readAhead(Deadline deadline) {
         std::span<const std::byte> payload;
         work_.pause();
-        auto header = line_->next(payload);
+        auto header = line_->nextBefore(payload, deadline);
         work_.begin();
-        if (!header) return false;
-        ahead_.push_back({header.value(), {payload.begin(), payload.end()}});
-        if (header->stream != 0) {
-            player_->preview(header->stream, payload);
-            return true;
+        if (!header) return ReadAhead::Ended;
+        if (!header.value()) return ReadAhead::Nothing;
+        const std::vector<std::byte> own(payload.begin(), payload.end());
+        if (header.value()->stream != 0) {
+            ahead_.push_back({*header.value(), own});
+            player_->preview(header.value()->stream, own);
+            return ReadAhead::Received;
         }
-        const auto command = argument<uint32_t>(payload);
-        return command && *command != static_cast<uint32_t>(wire::HeadCommand::ClientGone) &&
-               *command != static_cast<uint32_t>(wire::HeadCommand::Finish) &&
-               *command != static_cast<uint32_t>(wire::HeadCommand::Leave);
+        const auto command = argument<uint32_t>(own);
+        if (!command) return ReadAhead::Ended;
+        switch (static_cast<wire::HeadCommand>(*command)) {
+        // These change how the following packets are read.
+        case wire::HeadCommand::ResetDictionary:
+        case wire::HeadCommand::JoinMulticast:
+        case wire::HeadCommand::SwitchToMulticast: return headCommand(own) ? ReadAhead::Received : ReadAhead::Ended;
+        default: break;
+        }
+        ahead_.push_back({*header.value(), own});
+        return endsPlay(static_cast<wire::HeadCommand>(*command), std::span(own).subspan(sizeof *command))
+                   ? ReadAhead::Ended
+                   : ReadAhead::Received;
+    }
+
+    // Whether the program of the current frame, or this node, is at its end.
+    [[nodiscard]] bool endsPlay(wire::HeadCommand command, std::span<const std::byte> arguments) const {
+        const auto number = argument<uint32_t>(arguments);
+        switch (command) {
+        case wire::HeadCommand::Finish: return true;
+        case wire::HeadCommand::ClientGone: return number && *number == clientInHand_;
+        case wire::HeadCommand::Leave: return number && *number == static_cast<uint32_t>(setup_.node);
+        default: return false;
+        }
     }
 
     bool take(const wire::PacketHeader& header, std::span<const std::byte> payload) {
@@ -241,7 +263,7 @@ private:
                 sendMessage(wire::NodeMessage::DriverEvent, std::as_bytes(std::span(&n, 1)),
                             std::as_bytes(std::span(text)));
         };
-        outputs.readAhead = [this] { return readAhead(); };
+        outputs.readAhead = [this](Deadline deadline) { return readAhead(deadline); };
         outputs.objectRequest = [this](uint32_t client, std::span<const std::byte> message) {
             sendMessage(wire::NodeMessage::ObjectRequest, std::as_bytes(std::span(&client, 1)), message);
         };

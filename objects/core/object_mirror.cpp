@@ -246,14 +246,19 @@ Version ObjectMirror::versionAtFrame(const Uuid& id, uint64_t frame) const {
     return object ? object->history.versionAtFrame(frame) : 0;
 }
 
-const ShareMessage* ObjectMirror::shareOf(std::string_view name, uint64_t layoutHash, uint64_t frame) const {
+// Types of equal layout differ by their names.
+const ShareMessage* ObjectMirror::shareOf(std::string_view name, const archive::TypeLayout& layout,
+                                          uint64_t frame) const {
+    const std::string_view typeName = std::string_view(layout.typeName).substr(0, kMaxNameBytes);
     const auto range = names_.equal_range(name);
     const ShareMessage* best = nullptr;
     for (auto at = range.first; at != range.second; ++at) {
         const auto object = objects_.find(at->second);
         if (object == objects_.end() || frame >= object->second.endFrame) continue;
-        best = &object->second.share;
-        if (best->layoutHash == layoutHash) break;
+        const ShareMessage& share = object->second.share;
+        const bool sameLayout = share.layoutHash == layout.hash;
+        if (sameLayout && share.typeName == typeName) return &share;
+        if (!best || (sameLayout && best->layoutHash != layout.hash)) best = &share;
     }
     return best;
 }

@@ -52,7 +52,8 @@ public:
     [[nodiscard]] Found findAtFrame(const Uuid& id, uint64_t frame) const;
     [[nodiscard]] Version versionAtFrame(const Uuid& id, uint64_t frame) const; // 0: none
     // Returns the object with this name that a frame sees, preferably one with this layout. Null: none.
-    [[nodiscard]] const ShareMessage* shareOf(std::string_view name, uint64_t layoutHash, uint64_t frame) const;
+    [[nodiscard]] const ShareMessage* shareOf(std::string_view name, const archive::TypeLayout& layout,
+                                              uint64_t frame) const;
     [[nodiscard]] bool isKnown(const Uuid& id) const { return numbers_.contains(id); }
 
     // Requests an object, or missing blobs of its state, unless that is under way.

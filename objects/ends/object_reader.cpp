@@ -117,8 +117,9 @@ Result<ObjectReader::AnySnapshot> ObjectReader::Core::wait(Find&& find, const ar
         mirror.want(ref, monotonicNowNs());
         if (receive) {
             lock.unlock();
-            const bool mayArrive = receive();
+            const bool mayArrive = receive(Deadline::inMs(deadline.leftNs(kReaderWaitSliceNs) / kNsPerMs + 1));
             lock.lock();
+            mirror.tick(monotonicNowNs());
             if (!mayArrive) return readError(lookup.object + version, ": no more messages arrive");
             continue;
         }
@@ -165,7 +166,7 @@ Result<ObjectReader::AnySnapshot> ObjectReader::stateAtAny(uint64_t frame, std::
                                                            const archive::TypeOperations& type, Deadline deadline) {
     return core_->wait(
         [&](AnyRef& wanted) -> ObjectMirror::Found {
-            const objects::ShareMessage* const share = core_->mirror.shareOf(name, type.layout.hash, frame);
+            const objects::ShareMessage* const share = core_->mirror.shareOf(name, type.layout, frame);
             if (!share) return {};
             wanted.id = share->id;
             wanted.version = core_->mirror.versionAtFrame(share->id, frame);
@@ -195,7 +196,7 @@ Result<void> ReaderEnd::input(std::span<const std::byte> message, int64_t nowNs)
     return result;
 }
 
-void ReaderEnd::waitBy(std::function<bool()> receive) { core_->receive = std::move(receive); }
+void ReaderEnd::waitBy(std::function<bool(Deadline)> receive) { core_->receive = std::move(receive); }
 
 void ReaderEnd::tick(int64_t nowNs) {
     const std::lock_guard lock(core_->mutex);

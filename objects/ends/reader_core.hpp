@@ -46,9 +46,9 @@ struct ObjectReader::Core {
     // Drops the snapshots of ended objects. Requires the lock.
     void forgetEnded();
 
-    // Receives further messages while a caller waits, if the waiting thread is the one that receives. Empty: another
-    // thread receives. Returns false if no message will come.
-    std::function<bool()> receive;
+    // Receives further messages while a caller waits, if the waiting thread is the one that receives. Waits until the
+    // deadline. Returns false if no message will come. Empty: another thread receives.
+    std::function<bool(Deadline)> receive;
     std::mutex mutex;
     std::condition_variable arrival;
     objects::ObjectMirror mirror;
@@ -79,7 +79,7 @@ public:
 
     // Sets the function that waiting calls receive by. Call before the first of them; all calls then belong to the
     // thread that feeds this end.
-    void waitBy(std::function<bool()> receive);
+    void waitBy(std::function<bool(Deadline)> receive);
     // Makes waiting calls return an error. Snapshots stay valid.
     void close();
 

@@ -41,19 +41,22 @@ template <class Add> void splitIntoRecords(uint32_t node, std::span<const std::b
 // Joins the records of messages.
 class ObjectRecordJoiner {
 public:
-    // Takes the arguments of a record. Returns false if they are malformed.
+    // Takes the arguments of a record. Returns false, and drops the message in progress, if they are malformed, or if
+    // an earlier record of the message is missing.
     bool add(std::span<const std::byte> arguments) {
         uint32_t words[3] = {};
-        if (isComplete_) bytes_.clear();
-        isComplete_ = false;
-        if (arguments.size() < sizeof words) return false;
+        if (isComplete_) drop();
+        if (arguments.size() < sizeof words) return drop();
         std::memcpy(words, arguments.data(), sizeof words);
         arguments = arguments.subspan(sizeof words);
-        if (words[2] > arguments.size() || bytes_.size() + words[2] + uint64_t{words[1]} > kMaxObjectBytes)
-            return false;
-        bytes_.insert(bytes_.end(), arguments.begin(), arguments.begin() + words[2]);
+        const uint64_t following = words[1], length = words[2];
+        const bool continues = following_ > 0;
+        if (length > arguments.size() || bytes_.size() + length + following > kMaxObjectBytes) return drop();
+        if (continues && (length + following != following_ || words[0] != node_)) return drop();
+        bytes_.insert(bytes_.end(), arguments.begin(), arguments.begin() + static_cast<std::ptrdiff_t>(length));
         node_ = words[0];
-        isComplete_ = words[1] == 0;
+        following_ = following;
+        isComplete_ = following == 0;
         return true;
     }
     // Whether message() is complete.
@@ -64,7 +67,15 @@ public:
     [[nodiscard]] std::span<const std::byte> message() const { return bytes_; }
 
 private:
+    bool drop() {
+        bytes_.clear();
+        following_ = 0;
+        isComplete_ = false;
+        return false;
+    }
+
     std::vector<std::byte> bytes_;
+    uint64_t following_ = 0; // bytes of the message that are missing
     uint32_t node_ = kAllNodes;
     bool isComplete_ = false;
 };

@@ -45,16 +45,16 @@ public:
         wire::NativeFrame frame{};
         frame.number = number;
         const uint32_t swap[2] = {1, number};
-        EXPECT_TRUE(packets_.add(wire::kOpFrame, std::as_bytes(std::span(&frame, 1))).ok());
-        EXPECT_TRUE(packets_.add(wire::kOpSwap, std::as_bytes(std::span(swap))).ok());
+        packets_.add(wire::kOpFrame, std::as_bytes(std::span(&frame, 1)));
+        packets_.add(wire::kOpSwap, std::as_bytes(std::span(swap)));
         EXPECT_TRUE(packets_.flush().ok());
         writer_.frame(number);
     }
 
 private:
     void send(uint32_t node, std::span<const std::byte> message) {
-        wire::splitIntoRecords(node, message,
-                               [this](std::span<const std::byte> record) { EXPECT_TRUE(packets_.add(record).ok()); });
+        wire::splitIntoRecords(node, message, [this](std::span<const std::byte> record) { packets_.add(record); });
+        EXPECT_TRUE(packets_.sendComplete().ok());
     }
 
     native::PacketWriter packets_;
@@ -115,6 +115,50 @@ TEST(NativeStream, bringsANodeToTheNewestState) {
     EXPECT_EQ(state->angle, 5);
     EXPECT_EQ(state->text, "from the second frame on");
     EXPECT_EQ(state->blob.bytes().size(), large.size());
+}
+
+// A snapshot between two packets of one message: the node receives the rest of the message as a member.
+TEST(NativeStream, keepsTheBeginningOfAMessage) {
+    const auto kept = makeNativeStream(kMuch);
+    std::vector<std::vector<std::byte>> later; // packets after the snapshot
+    std::vector<snapshot::SnapshotPacket> packets;
+    native::PacketWriter writer([&](std::span<const std::byte> packet) {
+        if (packets.empty()) {
+            kept->append(kStream, packet);
+            packets = kept->snapshot();
+        } else {
+            later.emplace_back(packet.begin(), packet.end());
+        }
+        return Result<void>();
+    });
+    struct Sink final : objects::MessageSink {
+        native::PacketWriter* writer = nullptr;
+        void toAll(std::span<const std::byte> message) override {
+            wire::splitIntoRecords(wire::kAllNodes, message,
+                                   [this](std::span<const std::byte> record) { writer->add(record); });
+        }
+        void toOne(objects::PeerId, std::span<const std::byte>) override {}
+    } sink;
+    sink.writer = &writer;
+    objects::ObjectWriter objects(sink, {.keepsPushed = false});
+    ShareOptions options;
+    options.name = "scene";
+    auto object = objects.share(State{}, options);
+    ASSERT_TRUE(object.ok());
+    Shared<State> scene = std::move(object.value());
+    scene.edit().text = std::string(900'000, 'x');
+    ASSERT_TRUE(scene.commit().ok());
+    wire::NativeFrame frame{};
+    frame.number = 1;
+    writer.add(wire::kOpFrame, std::as_bytes(std::span(&frame, 1)));
+    ASSERT_TRUE(writer.flush().ok());
+    ASSERT_GT(later.size(), 1u);
+    for (auto& packet : later) packets.push_back({kStream, packet});
+    Node node(packets);
+    const auto state = node.state();
+    ASSERT_NE(state, nullptr);
+    EXPECT_EQ(state->text.size(), 900'000u);
+    objects.close();
 }
 
 TEST(NativeStream, forgetsEndedPrograms) {

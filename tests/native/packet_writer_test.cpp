@@ -15,7 +15,10 @@ TEST(PacketWriter, collectsRecordsUpToAChunk) {
         return Result<void>();
     });
     const std::vector<std::byte> record(100'000);
-    for (int i = 0; i < 5; ++i) ASSERT_TRUE(writer.add(record).ok());
+    for (int i = 0; i < 5; ++i) {
+        writer.add(record);
+        ASSERT_TRUE(writer.sendComplete().ok());
+    }
     EXPECT_EQ(sizes, (std::vector<size_t>{200'000, 200'000}));
     ASSERT_TRUE(writer.flush().ok());
     ASSERT_TRUE(writer.flush().ok()); // nothing is left
@@ -29,7 +32,7 @@ TEST(PacketWriter, writesRecordsThatAWalkReads) {
         return Result<void>();
     });
     const uint32_t arguments[2] = {1, 42};
-    ASSERT_TRUE(writer.add(8, std::as_bytes(std::span(arguments))).ok());
+    writer.add(8, std::as_bytes(std::span(arguments)));
     ASSERT_TRUE(writer.flush().ok());
     wire::RecordWalk walk(packet);
     wire::RecordView r;
@@ -40,20 +43,23 @@ TEST(PacketWriter, writesRecordsThatAWalkReads) {
     EXPECT_TRUE(walk.whole());
 }
 
-TEST(PacketWriter, dropsThePacketThatCannotBeSent) {
+TEST(PacketWriter, keepsPacketsThatCannotBeSent) {
     bool fails = true;
-    size_t sent = 0;
+    std::vector<size_t> sent;
     PacketWriter writer([&](std::span<const std::byte> packet) -> Result<void> {
-        if (fails) return Error{"the session is over"};
-        sent += packet.size();
+        if (fails) return Error{"no room"};
+        sent.push_back(packet.size());
         return {};
     });
-    ASSERT_TRUE(writer.add(std::vector<std::byte>(8)).ok());
+    writer.add(std::vector<std::byte>(8));
+    EXPECT_FALSE(writer.flush().ok());
+    EXPECT_EQ(writer.waitingBytes(), 8u);
+    writer.add(std::vector<std::byte>(16));
     EXPECT_FALSE(writer.flush().ok());
     fails = false;
-    ASSERT_TRUE(writer.add(std::vector<std::byte>(16)).ok());
     EXPECT_TRUE(writer.flush().ok());
-    EXPECT_EQ(sent, 16u);
+    EXPECT_EQ(sent, (std::vector<size_t>{8, 16}));
+    EXPECT_EQ(writer.waitingBytes(), 0u);
 }
 
 } // namespace

@@ -33,6 +33,16 @@ struct ForeignScene {
     template <class Visit> void fields(Visit& visit) { visit(angle, heights, tree, mesh); }
 };
 
+// Two types of one layout.
+struct Camera {
+    double value = 0;
+    template <class Visit> void fields(Visit& visit) { visit(value); }
+};
+struct Clock {
+    double value = 0;
+    template <class Visit> void fields(Visit& visit) { visit(value); }
+};
+
 constexpr PeerId kReader = 1;
 
 // Moves the value out. Requires success.
@@ -92,6 +102,32 @@ public:
 };
 
 const Deadline kAtOnce = Deadline::inMs(0);
+
+TEST(TypedEnds, distinguishTypesOfOneLayoutAndName) {
+    Pair pair;
+    auto camera = taken(pair.writer.share(Camera{1}));
+    auto clock = taken(pair.writer.share(Clock{2}));
+    ASSERT_TRUE(camera.commit().ok() && clock.commit().ok());
+    pair.exchange();
+    pair.end.frame(1);
+    EXPECT_EQ(pair.reader().stateAt<Camera>(1, "", kAtOnce).value()->value, 1);
+    EXPECT_EQ(pair.reader().stateAt<Clock>(1, "", kAtOnce).value()->value, 2);
+}
+
+TEST(TypedEnds, receiveInTheWaitingThread) {
+    Pair pair;
+    auto scene = taken(pair.writer.share(Scene{.angle = 4}, {.name = "scene"}));
+    ASSERT_TRUE(scene.commit().ok());
+    int calls = 0;
+    pair.end.waitBy([&](Deadline) {
+        if (++calls == 3) pair.exchange(); // the first calls receive nothing
+        return calls < 5;
+    });
+    EXPECT_EQ(pair.reader().get(scene.ref()).value()->angle, 4);
+    EXPECT_EQ(calls, 3);
+    EXPECT_FALSE(pair.reader().get(Ref<Scene>{{Uuid{std::byte{1}}, 1}}).ok()); // no more messages
+    EXPECT_EQ(calls, 5);
+}
 
 TEST(TypedEnds, showReadersCommittedStateOnly) {
     Pair pair;

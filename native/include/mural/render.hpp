@@ -162,7 +162,8 @@ public:
     // How parts of several ranges are combined. Default: by depth, GL_LESS.
     [[nodiscard]] virtual Composition composition() const { return {}; }
     // For Composition::By::Over: the position of a range in the order of blending. A smaller value is nearer to the
-    // eye. Must be a pure function of its arguments, because every node evaluates it. Equal values: the lower range is
+    // eye. Must be a pure function of its arguments and of task.state(), because every node evaluates it; waiting for
+    // objects here may give another result on one node. Equal values: the lower range is
     // nearer. Default: the start of the range.
     [[nodiscard]] virtual double order(RenderTask&, const Range& range) const { return range.start; }
 };

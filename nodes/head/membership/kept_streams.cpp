@@ -35,7 +35,7 @@ public:
         while (walk.next(r)) {
             const auto record = payload.subspan(r.offset, r.sizeBytes);
             if (r.opcode == wire::kOpObject)
-                client.take(r.arguments);
+                client.take(record, r.arguments);
             else if (r.opcode == wire::kOpFrame)
                 client.frame.assign(record.begin(), record.end());
             else if (r.opcode == wire::kOpWindow)
@@ -59,6 +59,7 @@ public:
                 wire::splitIntoRecords(wire::kAllNodes, message, add);
             });
             if (!client.frame.empty()) add(client.frame);
+            if (!client.open.empty()) add(client.open); // the rest follows
         }
         splitter.flush();
         return packets;
@@ -79,9 +80,13 @@ private:
         wire::ObjectRecordJoiner joiner;
         std::map<uint32_t, std::vector<std::byte>> windows; // the latest record of each
         std::vector<std::byte> frame;
+        std::vector<std::byte> open; // records of the message in progress
 
-        void take(std::span<const std::byte> arguments) {
-            if (!joiner.add(arguments) || !joiner.isComplete() || joiner.node() != wire::kAllNodes) return;
+        void take(std::span<const std::byte> record, std::span<const std::byte> arguments) {
+            open.insert(open.end(), record.begin(), record.end());
+            const bool isValid = joiner.add(arguments);
+            if (!isValid || joiner.isComplete()) open.clear();
+            if (!isValid || !joiner.isComplete() || joiner.node() != wire::kAllNodes) return;
             if (auto merged = keeper->input(joiner.message(), 0); !merged)
                 log::debug(log::Topic::Node, "rejoin log: ", merged.error().message);
         }
