@@ -69,5 +69,20 @@ TEST(SessionFrames, dropFramesThatWereInProgressAtTheBegin) {
     EXPECT_EQ(frames.frames.size(), 3u);
 }
 
+// The first track of a frame in progress may be the report of its end, which follows the first track of the next frame.
+TEST(SessionFrames, dropFramesInProgressThatFollowTheFirstCompleteOne) {
+    cli::SessionFrames frames;
+    for (const uint32_t frame : {1u, 3u, 2u, 4u}) {
+        FrameRecord record;
+        record.frame = frame;
+        if (frame > 2) record.tracks.push_back({SpanProcess::Node, 0, "replay", {{SpanKind::Replay, 0, 1}}});
+        frames.frames.push_back(record);
+    }
+    dropPartialBegin(frames);
+    ASSERT_EQ(frames.frames.size(), 2u);
+    EXPECT_EQ(frames.frames[0].frame, 3u);
+    EXPECT_EQ(frames.frames[1].frame, 4u);
+}
+
 } // namespace
 } // namespace mural

@@ -95,6 +95,23 @@ TEST(ThreadSpans, keepsLongSpansWhenItDropsShortOnes) {
     EXPECT_GE(taken.front().ns(), 99 * kMs);
 }
 
+TEST(ThreadSpans, keepsTheTimesOfManyShortSpans) {
+    ThreadSpans spans;
+    spans.start(SpanKind::WaitPackets, 0);
+    int64_t nowNs = 100 * kMs, workNs = 0, waitNs = nowNs;
+    for (int i = 0; i < 10'000; ++i) {
+        spans.enter(SpanKind::Replay, nowNs);
+        spans.enter(SpanKind::WaitPackets, nowNs += 7'000);
+        nowNs += 3'000;
+        workNs += 7'000;
+        waitNs += 3'000;
+    }
+    int64_t works = 0, waits = 0;
+    for (const Span& span : spans.take(nowNs)) (wire::isWait(span.kind) ? waits : works) += span.ns();
+    EXPECT_EQ(works, workNs);
+    EXPECT_EQ(waits, waitNs);
+}
+
 TEST(SpanScope, returnsToTheOuterStateOfItsThread) {
     ThreadSpans spans;
     { const SpanScope ignored(SpanKind::Decode); }

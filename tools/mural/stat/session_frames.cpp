@@ -39,7 +39,13 @@ void dropPartialBegin(SessionFrames& frames) {
     const auto limit = frames.frames.begin() + std::min<std::ptrdiff_t>(kPartial, std::ssize(frames.frames));
     const auto first =
         std::find_if(frames.frames.begin(), limit, [&](const FrameRecord& record) { return threadsOf(record) == all; });
-    if (first != limit) frames.frames.erase(frames.frames.begin(), first);
+    if (first == limit) return;
+    // A frame whose first track is the report of its end has a higher number than the frame after it.
+    const auto isEarlier = [client = first->client, frame = first->frame](const FrameRecord& record) {
+        return record.client == client && record.frame < frame;
+    };
+    frames.frames.erase(std::remove_if(first, limit, isEarlier), limit);
+    frames.frames.erase(frames.frames.begin(), first);
 }
 
 } // namespace mural::cli
