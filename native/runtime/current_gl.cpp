@@ -1,7 +1,6 @@
 #include "native/runtime/current_gl.hpp"
 
-#include <string>
-#include <type_traits>
+#include "native/runtime/gl_loader.hpp"
 
 namespace mural::native {
 
@@ -16,24 +15,20 @@ gl::Proc currentGlProc(const char* name) { return current ? current->procAddress
 Result<ShaderCalls> ShaderCalls::load() {
     if (!current) return Error{"no renderer runs in this thread; call this function from a task of the Renderer"};
     ShaderCalls calls;
-    std::string missing;
-    const auto load = [&](const char* name, auto& call) {
-        call = reinterpret_cast<std::remove_reference_t<decltype(call)>>(currentGlProc(name));
-        if (!call && missing.empty()) missing = name;
-    };
-    load("glCreateShader", calls.createShader);
-    load("glShaderSource", calls.shaderSource);
-    load("glCompileShader", calls.compileShader);
-    load("glGetShaderiv", calls.getShaderiv);
-    load("glGetShaderInfoLog", calls.getShaderInfoLog);
-    load("glDeleteShader", calls.deleteShader);
-    load("glCreateProgram", calls.createProgram);
-    load("glAttachShader", calls.attachShader);
-    load("glLinkProgram", calls.linkProgram);
-    load("glGetProgramiv", calls.getProgramiv);
-    load("glGetProgramInfoLog", calls.getProgramInfoLog);
-    load("glDeleteProgram", calls.deleteProgram);
-    if (!missing.empty()) return Error{"the GL driver lacks " + missing + "; shaders require OpenGL 2.0"};
+    GlLoader loader(currentGlProc);
+    loader.load("glCreateShader", calls.createShader);
+    loader.load("glShaderSource", calls.shaderSource);
+    loader.load("glCompileShader", calls.compileShader);
+    loader.load("glGetShaderiv", calls.getShaderiv);
+    loader.load("glGetShaderInfoLog", calls.getShaderInfoLog);
+    loader.load("glDeleteShader", calls.deleteShader);
+    loader.load("glCreateProgram", calls.createProgram);
+    loader.load("glAttachShader", calls.attachShader);
+    loader.load("glLinkProgram", calls.linkProgram);
+    loader.load("glGetProgramiv", calls.getProgramiv);
+    loader.load("glGetProgramInfoLog", calls.getProgramInfoLog);
+    loader.load("glDeleteProgram", calls.deleteProgram);
+    if (auto complete = loader.result("shaders require OpenGL 2.0"); !complete) return complete.error();
     return calls;
 }
 

@@ -1,48 +1,44 @@
 #include "native/runtime/gl_calls.hpp"
 
-#include <string>
+#include "native/runtime/gl_loader.hpp"
 
 namespace mural::native {
 
 Result<GlCalls> GlCalls::load(gl::Platform& platform) {
     GlCalls calls;
-    std::string missing;
-    const auto load = [&](const char* name, auto& call) {
-        call = reinterpret_cast<std::remove_reference_t<decltype(call)>>(platform.getProcAddress(name));
-        if (!call && missing.empty()) missing = name;
-    };
-    load("glGetError", calls.getError);
-    load("glGetString", calls.getString);
-    load("glGetIntegerv", calls.getIntegerv);
-    load("glEnable", calls.enable);
-    load("glDisable", calls.disable);
-    load("glViewport", calls.viewport);
-    load("glScissor", calls.scissor);
-    load("glClear", calls.clear);
-    load("glClearColor", calls.clearColor);
-    load("glClearDepth", calls.clearDepth);
-    load("glClearStencil", calls.clearStencil);
-    load("glColorMask", calls.colorMask);
-    load("glDepthMask", calls.depthMask);
-    load("glStencilMask", calls.stencilMask);
-    load("glDrawBuffer", calls.drawBuffer);
-    load("glReadBuffer", calls.readBuffer);
-    load("glPixelStorei", calls.pixelStorei);
-    load("glReadPixels", calls.readPixels);
-    load("glFinish", calls.finish);
-    load("glBindBuffer", calls.bindBuffer);
-    load("glBindFramebuffer", calls.bindFramebuffer);
-    load("glGenFramebuffers", calls.genFramebuffers);
-    load("glDeleteFramebuffers", calls.deleteFramebuffers);
-    load("glFramebufferTexture2D", calls.framebufferTexture2D);
-    load("glBlitFramebuffer", calls.blitFramebuffer);
-    load("glGenTextures", calls.genTextures);
-    load("glDeleteTextures", calls.deleteTextures);
-    load("glBindTexture", calls.bindTexture);
-    load("glActiveTexture", calls.activeTexture);
-    load("glTexImage2D", calls.texImage2D);
-    load("glTexParameteri", calls.texParameteri);
-    if (!missing.empty()) return Error{"the GL driver lacks " + missing + "; OpenGL 3.0 is required"};
+    GlLoader loader([&platform](const char* name) { return platform.getProcAddress(name); });
+    loader.load("glGetError", calls.getError);
+    loader.load("glGetString", calls.getString);
+    loader.load("glGetIntegerv", calls.getIntegerv);
+    loader.load("glEnable", calls.enable);
+    loader.load("glDisable", calls.disable);
+    loader.load("glViewport", calls.viewport);
+    loader.load("glScissor", calls.scissor);
+    loader.load("glClear", calls.clear);
+    loader.load("glClearColor", calls.clearColor);
+    loader.load("glClearDepth", calls.clearDepth);
+    loader.load("glClearStencil", calls.clearStencil);
+    loader.load("glColorMask", calls.colorMask);
+    loader.load("glDepthMask", calls.depthMask);
+    loader.load("glStencilMask", calls.stencilMask);
+    loader.load("glDrawBuffer", calls.drawBuffer);
+    loader.load("glReadBuffer", calls.readBuffer);
+    loader.load("glPixelStorei", calls.pixelStorei);
+    loader.load("glReadPixels", calls.readPixels);
+    loader.load("glFinish", calls.finish);
+    loader.load("glBindBuffer", calls.bindBuffer);
+    loader.load("glBindFramebuffer", calls.bindFramebuffer);
+    loader.load("glGenFramebuffers", calls.genFramebuffers);
+    loader.load("glDeleteFramebuffers", calls.deleteFramebuffers);
+    loader.load("glFramebufferTexture2D", calls.framebufferTexture2D);
+    loader.load("glBlitFramebuffer", calls.blitFramebuffer);
+    loader.load("glGenTextures", calls.genTextures);
+    loader.load("glDeleteTextures", calls.deleteTextures);
+    loader.load("glBindTexture", calls.bindTexture);
+    loader.load("glActiveTexture", calls.activeTexture);
+    loader.load("glTexImage2D", calls.texImage2D);
+    loader.load("glTexParameteri", calls.texParameteri);
+    if (auto complete = loader.result("OpenGL 3.0 is required"); !complete) return complete.error();
     return calls;
 }
 

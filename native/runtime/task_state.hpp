@@ -1,4 +1,4 @@
-// What a RenderTask refers to: one task of one frame.
+// The state behind a RenderTask: one task of one frame.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// What draws the streams of programs on a render node. The node process owns one player: a Replay for captured programs
-// (nodes/replay), or the tasks of a program that uses the native API (native/runtime).
+// The interface of players, which draw the streams of programs on a render node. The node process owns one player: a
+// Replay for captured programs (nodes/replay), or the tasks of a program that uses the native API (native/runtime).
 //
 // Thread safety: the player's thread calls everything, which is the thread of the node's stream.
 #pragma once

@@ -197,7 +197,9 @@ private:
         clients_ = 0;
         head_->process().waitUntil(Deadline::inMs(500));
         console_.error("the head process was lost (" + head_->process().describeEnd() + "); " +
-                       (!finishing_ ? "the program continues alone, without the wall" : "there is no report"));
+                       (finishing_                        ? "there is no report"
+                        : run_.config.nodeProgram.empty() ? "the program continues alone, without the wall"
+                                                          : "a program with the native API ends then"));
         endUncounted();
     }
 
