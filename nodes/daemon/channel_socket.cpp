@@ -49,7 +49,10 @@ Result<void> ChannelSocket::open(Deadline deadline) {
         if (auto r = flush(deadline); !r) return r;
         if (channel_.open()) return {};
         if (waitForSocket(socket_.get(), POLLIN, deadline) == 0) return Error{"the peer's secret differs"};
-        if (auto r = fetch(); !r) return r;
+        if (auto r = fetch(); !r) {
+            static_cast<void>(flush(Deadline::inMs(0)).ok()); // the alert tells the peer why the connection ends
+            return r;
+        }
     }
 }
 

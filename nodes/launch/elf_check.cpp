@@ -1,12 +1,11 @@
 #include "nodes/launch/elf_check.hpp"
 
-#include <algorithm>
 #include <cerrno>
-#include <cstddef>
-#include <cstddef>
 #include <cstring>
-#include <elf.h>
 #include <fcntl.h>
+#include <gelf.h>
+#include <memory>
+#include <optional>
 #include <string_view>
 #include <unistd.h>
 #include <vector>
@@ -15,91 +14,95 @@ namespace mural::launch {
 
 namespace {
 
-constexpr size_t kHeadBytes = 512; // the kernel reads 256 bytes of a "#!" line; ELF headers are smaller than this
-constexpr size_t kMaxProgramHeaders = 4096;
-constexpr uint64_t kMaxPathBytes = 4096;
-constexpr uint64_t kMaxTableBytes = 64 << 20; // string tables of the largest libraries have a few MiB
+constexpr size_t kHeadBytes = 512; // the kernel reads 256 bytes of a "#!" line
 
 class File {
 public:
-    explicit File(const std::string& path) : fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+    explicit File(const std::string& path) : fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+        if (fd_ >= 0 && elf_version(EV_CURRENT) != EV_NONE) elf_.reset(elf_begin(fd_, ELF_C_READ, nullptr));
+    }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
     ~File() {
+        elf_.reset();
         if (fd_ >= 0) close(fd_);
     }
     [[nodiscard]] bool opened() const { return fd_ >= 0; }
-    // Returns the number of bytes read, fewer than requested at the end of the file.
-    size_t readAt(void* into, size_t sizeBytes, uint64_t at) const {
-        size_t done = 0;
-        while (done < sizeBytes) {
-            const ssize_t n =
-                pread(fd_, static_cast<char*>(into) + done, sizeBytes - done, static_cast<off_t>(at + done));
-            if (n < 0 && errno == EINTR) continue;
-            if (n <= 0) break;
-            done += static_cast<size_t>(n);
-        }
-        return done;
+    [[nodiscard]] std::string head() const {
+        std::string bytes(kHeadBytes, '\0');
+        const ssize_t n = pread(fd_, bytes.data(), bytes.size(), 0);
+        bytes.resize(n > 0 ? static_cast<size_t>(n) : 0);
+        return bytes;
+    }
+    // Returns the header, or nothing if this is no ELF file.
+    [[nodiscard]] std::optional<GElf_Ehdr> header() const {
+        GElf_Ehdr header;
+        if (elf_ == nullptr || elf_kind(elf_.get()) != ELF_K_ELF || gelf_getehdr(elf_.get(), &header) == nullptr)
+            return {};
+        return header;
+    }
+    [[nodiscard]] std::vector<GElf_Phdr> segments() const {
+        std::vector<GElf_Phdr> segments;
+        size_t count = 0;
+        GElf_Phdr segment;
+        if (elf_getphdrnum(elf_.get(), &count) != 0) return {};
+        for (size_t i = 0; i < count && gelf_getphdr(elf_.get(), static_cast<int>(i), &segment) != nullptr; ++i)
+            segments.push_back(segment);
+        return segments;
+    }
+    // Returns bytes of the file as elements of a type, or null if they are not in the file. Owned by the file.
+    Elf_Data* at(uint64_t offset, uint64_t sizeBytes, Elf_Type type) const {
+        return elf_getdata_rawchunk(elf_.get(), static_cast<int64_t>(offset), sizeBytes, type);
+    }
+    // Returns the string at an offset, which ends with the range at the latest.
+    [[nodiscard]] std::string string(uint64_t offset, uint64_t mostBytes) const {
+        const Elf_Data* data = mostBytes > 0 ? at(offset, mostBytes, ELF_T_BYTE) : nullptr;
+        if (data == nullptr) return {};
+        const auto* text = static_cast<const char*>(data->d_buf);
+        return {text, strnlen(text, data->d_size)};
     }
 
 private:
+    struct End {
+        void operator()(Elf* elf) const { elf_end(elf); }
+    };
     int fd_;
+    std::unique_ptr<Elf, End> elf_;
 };
 
-template <class Header, class Program> void readElf(const File& file, ExecutableFacts& facts) {
-    Header header{};
-    if (file.readAt(&header, sizeof header, 0) != sizeof header) return;
+void readElf(const File& file, ExecutableFacts& facts) {
+    const auto header = file.header();
+    if (!header) return;
     facts.kind = FileKind::Elf;
-    facts.machine = header.e_machine;
-    if (header.e_phentsize != sizeof(Program) || header.e_phnum > kMaxProgramHeaders) return;
-    std::vector<Program> programs(header.e_phnum);
-    const size_t wanted = programs.size() * sizeof(Program);
-    if (file.readAt(programs.data(), wanted, header.e_phoff) != wanted) return;
-    for (const Program& p : programs) {
-        if (p.p_type != PT_INTERP) continue;
+    facts.bits = header->e_ident[EI_CLASS] == ELFCLASS64 ? 64 : 32;
+    facts.machine = header->e_machine;
+    for (const GElf_Phdr& segment : file.segments()) {
+        if (segment.p_type != PT_INTERP) continue;
         facts.hasInterpreter = true;
-        std::string name(std::min<uint64_t>(p.p_filesz, kMaxPathBytes), '\0');
-        name.resize(file.readAt(name.data(), name.size(), p.p_offset));
-        facts.interpreter = name.substr(0, name.find('\0'));
+        facts.interpreter = file.string(segment.p_offset, segment.p_filesz);
     }
 }
 
-template <class T> std::vector<T> readTable(const File& file, uint64_t at, uint64_t sizeBytes) {
-    std::vector<T> rows(std::min(sizeBytes, kMaxTableBytes) / sizeof(T));
-    rows.resize(file.readAt(rows.data(), rows.size() * sizeof(T), at) / sizeof(T));
-    return rows;
+// Converts an address to a file offset.
+std::optional<uint64_t> offsetOf(const std::vector<GElf_Phdr>& segments, uint64_t address) {
+    for (const GElf_Phdr& s : segments) {
+        if (s.p_type == PT_LOAD && address >= s.p_vaddr && address - s.p_vaddr < s.p_filesz)
+            return address - s.p_vaddr + s.p_offset;
+    }
+    return {};
 }
 
-// Converts an address to a file offset. UINT64_MAX: not in the file.
-uint64_t offsetOf(const std::vector<Elf64_Phdr>& programs, uint64_t address) {
-    for (const Elf64_Phdr& p : programs) {
-        if (p.p_type == PT_LOAD && address >= p.p_vaddr && address - p.p_vaddr < p.p_filesz)
-            return address - p.p_vaddr + p.p_offset;
+std::vector<GElf_Dyn> dynamicEntries(const File& file, const std::vector<GElf_Phdr>& segments) {
+    std::vector<GElf_Dyn> entries;
+    for (const GElf_Phdr& segment : segments) {
+        if (segment.p_type != PT_DYNAMIC) continue;
+        Elf_Data* data = file.at(segment.p_offset, segment.p_filesz, ELF_T_DYN);
+        GElf_Dyn entry;
+        for (int i = 0; data != nullptr && gelf_getdyn(data, i, &entry) != nullptr && entry.d_tag != DT_NULL; ++i)
+            entries.push_back(entry);
     }
-    return UINT64_MAX;
+    return entries;
 }
-
-// The strings of a dynamic section, by offset into its string table.
-class Strings {
-public:
-    Strings(const File& file, const std::vector<Elf64_Phdr>& programs, const std::vector<Elf64_Dyn>& dynamic) {
-        uint64_t at = UINT64_MAX;
-        uint64_t sizeBytes = 0;
-        for (const Elf64_Dyn& d : dynamic) {
-            if (d.d_tag == DT_STRTAB) at = offsetOf(programs, d.d_un.d_ptr);
-            if (d.d_tag == DT_STRSZ) sizeBytes = d.d_un.d_val;
-        }
-        if (at != UINT64_MAX) bytes_ = readTable<char>(file, at, sizeBytes);
-    }
-    [[nodiscard]] std::string at(uint64_t place) const {
-        if (place >= bytes_.size()) return {};
-        const auto first = bytes_.begin() + static_cast<std::ptrdiff_t>(place);
-        return {first, std::find(first, bytes_.end(), '\0')};
-    }
-
-private:
-    std::vector<char> bytes_;
-};
 
 std::string_view trimmed(std::string_view s) {
     const auto first = s.find_first_not_of(" \t");
@@ -120,21 +123,14 @@ void readScriptLine(std::string_view head, ExecutableFacts& facts) {
 Result<ExecutableFacts> readExecutable(const std::string& path) {
     const File file(path);
     if (!file.opened()) return Error{path + " cannot be read: " + std::strerror(errno)};
-    char head[kHeadBytes];
-    const std::string_view text(head, file.readAt(head, sizeof head, 0));
+    const std::string text = file.head();
 
     ExecutableFacts facts;
-    if (text.size() > EI_CLASS && text.starts_with(ELFMAG)) {
-        if (text[EI_CLASS] == ELFCLASS64) {
-            facts.bits = 64;
-            readElf<Elf64_Ehdr, Elf64_Phdr>(file, facts);
-        } else if (text[EI_CLASS] == ELFCLASS32) {
-            facts.bits = 32;
-            readElf<Elf32_Ehdr, Elf32_Phdr>(file, facts);
-        }
+    if (text.starts_with(ELFMAG)) {
+        readElf(file, facts);
     } else if (text.starts_with("#!")) {
         readScriptLine(text, facts);
-    } else if (text.substr(0, text.find('\n')).find('\0') == std::string_view::npos) {
+    } else if (text.substr(0, text.find('\n')).find('\0') == std::string::npos) {
         facts.kind = FileKind::PlainScript; // like shells: a text has no zero byte in its first line
     }
     return facts;
@@ -143,23 +139,25 @@ Result<ExecutableFacts> readExecutable(const std::string& path) {
 Result<LibraryFacts> readLibrary(const std::string& path) {
     const File file(path);
     if (!file.opened()) return Error{path + " cannot be read: " + std::strerror(errno)};
-    Elf64_Ehdr header{};
-    const bool whole = file.readAt(&header, sizeof header, 0) == sizeof header;
-    if (!whole || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64 ||
-        header.e_phentsize != sizeof(Elf64_Phdr)) {
+    const auto header = file.header();
+    if (!header || header->e_ident[EI_CLASS] != ELFCLASS64)
         return Error{path + " is not a 64-bit library; check the file"};
+    const auto segments = file.segments();
+    const auto entries = dynamicEntries(file, segments);
+    std::optional<uint64_t> strings;
+    uint64_t stringBytes = 0;
+    for (const GElf_Dyn& e : entries) {
+        if (e.d_tag == DT_STRTAB) strings = offsetOf(segments, e.d_un.d_ptr);
+        if (e.d_tag == DT_STRSZ) stringBytes = e.d_un.d_val;
     }
-    const auto programs = readTable<Elf64_Phdr>(file, header.e_phoff, uint64_t{header.e_phnum} * sizeof(Elf64_Phdr));
-    std::vector<Elf64_Dyn> dynamic;
-    for (const Elf64_Phdr& p : programs) {
-        if (p.p_type == PT_DYNAMIC) dynamic = readTable<Elf64_Dyn>(file, p.p_offset, p.p_filesz);
-    }
-    const Strings strings(file, programs, dynamic);
     LibraryFacts facts;
-    for (const Elf64_Dyn& d : dynamic) {
-        if (d.d_tag == DT_NULL) break;
-        if (d.d_tag == DT_SONAME) facts.soname = strings.at(d.d_un.d_val);
-        if (d.d_tag == DT_NEEDED) facts.needed.push_back(strings.at(d.d_un.d_val));
+    for (const GElf_Dyn& e : entries) {
+        if ((e.d_tag != DT_SONAME && e.d_tag != DT_NEEDED) || !strings || e.d_un.d_val >= stringBytes) continue;
+        const std::string name = file.string(*strings + e.d_un.d_val, stringBytes - e.d_un.d_val);
+        if (e.d_tag == DT_SONAME)
+            facts.soname = name;
+        else
+            facts.needed.push_back(name);
     }
     return facts;
 }

@@ -13,6 +13,8 @@ inline std::string elf64(bool withInterpreter, uint16_t machine) {
     std::memcpy(header.e_ident, ELFMAG, SELFMAG);
     header.e_ident[EI_CLASS] = ELFCLASS64;
     header.e_ident[EI_DATA] = ELFDATA2LSB;
+    header.e_ident[EI_VERSION] = EV_CURRENT;
+    header.e_version = EV_CURRENT;
     header.e_machine = machine;
     header.e_type = ET_DYN;
     header.e_phoff = sizeof header;
@@ -29,6 +31,9 @@ inline std::string elf32() {
     Elf32_Ehdr header{};
     std::memcpy(header.e_ident, ELFMAG, SELFMAG);
     header.e_ident[EI_CLASS] = ELFCLASS32;
+    header.e_ident[EI_DATA] = ELFDATA2LSB;
+    header.e_ident[EI_VERSION] = EV_CURRENT;
+    header.e_version = EV_CURRENT;
     header.e_machine = EM_386;
     header.e_phentsize = sizeof(Elf32_Phdr);
     return {reinterpret_cast<const char*>(&header), sizeof header};
@@ -47,6 +52,9 @@ inline std::string library64(const std::string& soname, const std::vector<std::s
     Elf64_Ehdr header{};
     std::memcpy(header.e_ident, ELFMAG, SELFMAG);
     header.e_ident[EI_CLASS] = ELFCLASS64;
+    header.e_ident[EI_DATA] = ELFDATA2LSB;
+    header.e_ident[EI_VERSION] = EV_CURRENT;
+    header.e_version = EV_CURRENT;
     header.e_type = ET_DYN;
     header.e_phoff = sizeof header;
     header.e_phentsize = sizeof(Elf64_Phdr);

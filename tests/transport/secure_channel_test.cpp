@@ -2,7 +2,9 @@
 #include "transport/secure/secure_channel.hpp"
 
 #include <gtest/gtest.h>
+#include <openssl/ssl.h>
 
+#include <memory>
 #include <random>
 
 namespace mural {
@@ -97,6 +99,14 @@ TEST(SecureChannel, rejectsWrongSecretsAndStrangers) {
     EXPECT_FALSE(wrong.host.open());
     EXPECT_FALSE(wrong.host.send(bytesOf("x")));
 
+    Pair alerted(1, 2);
+    ASSERT_FALSE(alerted.host.input(alerted.member.takeOutput(), alerted.atHost));
+    const auto rejected = alerted.member.input(alerted.host.takeOutput(), alerted.atMember);
+    ASSERT_FALSE(rejected) << "the member receives an alert";
+    EXPECT_NE(rejected.error().message.find("the host rejects the secret"), std::string::npos)
+        << rejected.error().message;
+    EXPECT_FALSE(alerted.member.open());
+
     Pair stranger;
     stranger.member = SecureChannel::connecting("node-2", secretOf(1));
     stranger.talk();
@@ -125,7 +135,7 @@ TEST(SecureChannel, rejectsRecordsOfAnotherConnection) {
 
 TEST(SecureChannel, detectsAnyChangedBit) {
     std::mt19937 random(7);
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         Pair p;
         size_t turn = random() % 4; // index of the modified piece
         const auto spoil = [&](Bytes& bytes) {
@@ -137,6 +147,78 @@ TEST(SecureChannel, detectsAnyChangedBit) {
         // A modified length may leave the host waiting, but a forged message never arrives.
         for (const Bytes& m : p.atHost) EXPECT_EQ(m, bytesOf("genuine"));
     }
+}
+
+// A TLS host with a certificate but without the secret. It accepts the member's first message as any web server would.
+struct CertifiedHost {
+    std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> context{SSL_CTX_new(TLS_server_method()), SSL_CTX_free};
+    std::unique_ptr<SSL, decltype(&SSL_free)> tls{nullptr, SSL_free};
+    CertifiedHost() {
+        std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(EVP_EC_gen("P-256"), EVP_PKEY_free);
+        std::unique_ptr<X509, decltype(&X509_free)> certificate(X509_new(), X509_free);
+        X509_gmtime_adj(X509_getm_notBefore(certificate.get()), 0);
+        X509_gmtime_adj(X509_getm_notAfter(certificate.get()), 3600);
+        X509_set_pubkey(certificate.get(), key.get());
+        X509_sign(certificate.get(), key.get(), EVP_sha256());
+        SSL_CTX_use_certificate(context.get(), certificate.get());
+        SSL_CTX_use_PrivateKey(context.get(), key.get());
+        tls.reset(SSL_new(context.get()));
+        SSL_set_bio(tls.get(), BIO_new(BIO_s_mem()), BIO_new(BIO_s_mem()));
+        SSL_set_accept_state(tls.get());
+    }
+    Bytes answer(const Bytes& question) {
+        BIO_write(SSL_get_rbio(tls.get()), question.data(), static_cast<int>(question.size()));
+        SSL_do_handshake(tls.get());
+        Bytes bytes(BIO_ctrl_pending(SSL_get_wbio(tls.get())));
+        BIO_read(SSL_get_wbio(tls.get()), bytes.data(), static_cast<int>(bytes.size()));
+        return bytes;
+    }
+};
+
+TEST(SecureChannel, rejectsACertificateInsteadOfTheSecret) {
+    CertifiedHost stranger;
+    SecureChannel member = SecureChannel::connecting("node-1", secretOf(1));
+    const Bytes answer = stranger.answer(member.takeOutput());
+    ASSERT_GT(answer.size(), 300u) << "it offers its certificate";
+    std::vector<Bytes> none;
+    EXPECT_FALSE(member.input(answer, none));
+    EXPECT_FALSE(member.open());
+}
+
+TEST(SecureChannel, requestsNoByteBeyondTheCurrentRecord) {
+    Pair p;
+    p.talk();
+    ASSERT_TRUE(p.member.send(Bytes(20'000, std::byte{1})));
+    const Bytes wire = p.member.takeOutput();
+    size_t at = 0;
+    size_t reads = 0;
+    while (p.atHost.empty()) {
+        const size_t wanted = p.host.wantsBytes();
+        ASSERT_LE(at + wanted, wire.size());
+        ASSERT_TRUE(p.host.input(std::span(wire).subspan(at, wanted), p.atHost));
+        at += wanted;
+        ++reads;
+    }
+    EXPECT_EQ(at, wire.size());
+    EXPECT_EQ(reads, 4u) << "a header and a body, for two records";
+}
+
+TEST(SecureChannel, changesItsKeyAndContinues) {
+    Pair p;
+    p.talk();
+    const Bytes one{std::byte{1}};
+    size_t usual = 0;
+    size_t longer = 0;
+    for (uint64_t i = 0; i < SecureChannel::kRecordsPerKey + 10; ++i) {
+        ASSERT_TRUE(p.member.send(one));
+        const Bytes wire = p.member.takeOutput();
+        if (i == 0) usual = wire.size();
+        if (wire.size() != usual) ++longer;
+        ASSERT_TRUE(p.host.input(wire, p.atHost));
+        ASSERT_EQ(p.atHost.size(), 1u);
+        p.atHost.clear();
+    }
+    EXPECT_EQ(longer, 1u) << "one message also carries the update of the key";
 }
 
 TEST(SecureChannel, carriesLongMessagesAndRejectsLongerOnes) {

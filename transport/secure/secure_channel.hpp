@@ -1,13 +1,11 @@
-// Messages over a byte stream, readable and writable only for the two owners of a shared secret. Has no sockets: bytes
-// in, bytes out.
+// Messages over a byte stream, readable and writable only for the two owners of a shared secret: TLS 1.3 (RFC 8446)
+// with an external pre-shared key and an ephemeral X25519 exchange (psk_dhe_ke), implemented by OpenSSL. Has no
+// sockets: bytes in, bytes out.
 //
-//   member to host  "MURALSC1", u8 length and name of the member, an ephemeral X25519 key (32 bytes)
-//   host to member  its key (32), proof (32): BLAKE2b keyed with the secret, of "host" and everything before
-//   member to host  proof (32): of "member" and everything before
-//   both            stream header (24), then records: u32 little-endian length, XChaCha20-Poly1305 secretstream
+// The member is the TLS client, and its name is the identity of the key. The name selects the secret at the host and is
+// not hidden. Certificates are not used. Within TLS a message is a u32 little-endian length and its bytes.
 //
-// The keys of the records come from the exchange and the secret, which gives forward secrecy. The name selects the
-// secret at the host and is not hidden.
+// Thread safety: one thread may call input() and wantsBytes() while another calls send(), finish() and takeOutput().
 #pragma once
 
 #include <array>
@@ -31,8 +29,10 @@ public:
     using FindSecret = std::function<std::optional<ChannelSecret>(const std::string& name)>;
     static constexpr size_t kMaxMessageBytes = size_t{1} << 20;
     static constexpr size_t kMaxNameBytes = 64;
+    // RFC 8446 section 5.5 limits a key of AES-GCM to 2^24.5 records. The sender changes its key long before.
+    static constexpr uint64_t kRecordsPerKey = uint64_t{1} << 18;
 
-    // The member's end, and the host's end.
+    // The member's end, and the host's end. The name must not be empty; it is cut at kMaxNameBytes.
     static SecureChannel connecting(const std::string& name, const ChannelSecret& secret);
     static SecureChannel accepting(FindSecret find);
     SecureChannel(SecureChannel&&) noexcept;
@@ -40,11 +40,11 @@ public:
     ~SecureChannel();
 
     // Processes bytes of the peer, in pieces of any size, and appends complete messages. After an error the channel is
-    // unusable; earlier messages are authentic.
+    // unusable; earlier messages are authentic. takeOutput() then has an alert, by which the peer learns of the error.
     Result<void> input(std::span<const std::byte> bytes, std::vector<std::vector<std::byte>>& messages);
     // Errors: the message is too long; the channel is not open, or has ended.
     Result<void> send(std::span<const std::byte> message);
-    // Returns the number of bytes required for the next message or step.
+    // Returns the number of bytes that complete the current TLS record, or its header.
     [[nodiscard]] size_t wantsBytes() const;
     // Sends the final message, which distinguishes an orderly end from a broken connection.
     void finish();

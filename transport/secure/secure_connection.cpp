@@ -10,7 +10,8 @@
 namespace mural {
 
 namespace {
-constexpr size_t kRecordBytes = size_t{32} * 1024; // the underlying connection writes it completely or not at all
+// A message fills two TLS records; the underlying connection writes it completely or not at all.
+constexpr size_t kRecordBytes = size_t{32} * 1024 - 4;
 constexpr int64_t kSliceMs = 100;
 constexpr int64_t kRecordMs = 20'000; // timeout of the rest of a record
 
@@ -60,8 +61,12 @@ Result<std::unique_ptr<SecureConnection>> SecureConnection::shakeHands(std::uniq
         if (!got && cancelled && cancelled())
             return Error{c.over_->describe() + ": the connection is not needed any more"};
         if (!got) continue;
-        if (auto good = c.channel_.input(c.arrived_, c.messages_); !good)
+        if (auto good = c.channel_.input(c.arrived_, c.messages_); !good) {
+            // The alert tells the peer why the connection ends.
+            if (const auto alert = c.channel_.takeOutput(); !alert.empty() && c.over_->write(alert, deadline))
+                c.over_->flush();
             return Error{c.over_->describe() + ": " + good.error().message};
+        }
     }
 }
 

@@ -4,6 +4,9 @@
 // A symbol is the length of a datagram's payload (2 bytes) and the payload, as if zero-padded to the longest. Parity
 // symbols thus cover lengths too, and short datagrams cost only their own bytes.
 //
+// The field is GF(2^8) over x^8 + x^4 + x^3 + x^2 + 1. ISA-L does its arithmetic with the vector instructions of the
+// machine.
+//
 // Source: RFC 5510 for the principle, with another matrix.
 #pragma once
 

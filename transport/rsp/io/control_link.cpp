@@ -2,6 +2,7 @@
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include <boost/asio/write.hpp>
 
@@ -115,7 +116,11 @@ void ControlLink::took(size_t bytes) {
         if (const auto events = events_) events->message(*decoded);
         if (ended_) return;
     }
-    if (!good) return close(good.error().message);
+    if (!good) {
+        const auto alert = channel_.takeOutput(); // tells the peer why the connection ends; lost if the socket is full
+        if (writing_.empty()) ::send(socket_.native_handle(), alert.data(), alert.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+        return close(good.error().message);
+    }
     flush();
     if (channel_.finished()) close("");
 }
