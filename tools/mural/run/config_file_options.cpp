@@ -6,7 +6,7 @@
 
 #include "nodes/head/planning/config_plan.hpp"
 #include "nodes/launch/private_display.hpp"
-#include "tools/mural/run/option_values.hpp"
+#include "tools/mural/run/option_choices.hpp"
 #include "tools/mural/run/run_option_readers.hpp"
 
 namespace mural::cli {
@@ -14,9 +14,7 @@ namespace mural::cli {
 namespace {
 
 Result<void> readProjection(const RunArguments& a, SessionConfig& c) {
-    const Choice<ProjectionChoice> all[] = {
-        {"auto", ProjectionChoice::Auto}, {"program", ProjectionChoice::Program}, {"room", ProjectionChoice::Room}};
-    if (auto r = choose("--projection", a.projection, all, c.projection); !r) return r;
+    if (auto r = choose("--projection", a.projection, kProjectionChoices, c.projection); !r) return r;
     return readReal("--model-unit", a.modelUnit, 1e-9, c.modelUnit);
 }
 

@@ -7,7 +7,7 @@
 
 #include "compositor/strategies/strategy.hpp"
 #include "nodes/frame_transfer/plane_codecs.hpp"
-#include "tools/mural/run/option_values.hpp"
+#include "tools/mural/run/option_choices.hpp"
 #include "tools/mural/run/run_option_readers.hpp"
 
 namespace mural::cli {
@@ -36,10 +36,7 @@ Result<void> readZoom(const RunArguments& a, Zoom& zoom) {
 }
 
 Result<void> readBalance(const RunArguments& a, SessionConfig& c) {
-    using balance::Balance;
-    const Choice<Balance> kinds[] = {
-        {"auto", Balance::Auto}, {"load", Balance::Load}, {"tree", Balance::Tree}, {"off", Balance::Off}};
-    if (auto r = choose("--balance", a.balance, kinds, c.balance); !r) return r;
+    if (auto r = choose("--balance", a.balance, kBalanceChoices, c.balance); !r) return r;
     if (!a.balance || a.config) return {};
     for (const auto& [option, given] :
          {std::pair("--tile-queue", a.tileQueue.has_value()), std::pair("--chunk-queue", a.chunkQueue.has_value())})
@@ -50,15 +47,8 @@ Result<void> readBalance(const RunArguments& a, SessionConfig& c) {
 } // namespace
 
 Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
-    const Choice<StereoMode> modes[] = {{"off", StereoMode::Off},
-                                        {"anaglyph", StereoMode::Anaglyph},
-                                        {"side-by-side", StereoMode::SideBySide},
-                                        {"top-bottom", StereoMode::TopBottom},
-                                        {"left", StereoMode::Left},
-                                        {"right", StereoMode::Right},
-                                        {"quad", StereoMode::Quad}};
     PassCounts& p = c.passes;
-    if (auto r = choose("--stereo", a.stereo, modes, p.stereo); !r) return r;
+    if (auto r = choose("--stereo", a.stereo, kStereoChoices, p.stereo); !r) return r;
     if (auto r = readReal("--eye-base", a.eyeBase, 0, c.eyeBase); !r) return r;
     if (auto r = readReal("--focus", a.focus, 1e-9, c.focusDistance); !r) return r;
     if ((a.eyeBase || a.focus) && p.stereo == StereoMode::Off && !a.config)

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "tools/mural/run/option_values.hpp"
+#include "tools/mural/run/option_choices.hpp"
 #include "tools/mural/run/run_option_readers.hpp"
 
 namespace mural::cli {
@@ -11,20 +11,13 @@ namespace mural::cli {
 namespace {
 
 Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
-    const Choice<Display> displays[] = {{"app", Display::App}, {"windows", Display::Windows}, {"none", Display::None}};
-    const Choice<Tiling> tilings[] = {{"exact", Tiling::Exact}, {"culled", Tiling::Culled}, {"lean", Tiling::Lean}};
-    const Choice<LocalRendering> localRenderings[] = {{"off", LocalRendering::Off}, {"on", LocalRendering::On}};
-    const Choice<DeltaMode> deltaModes[] = {{"auto", DeltaMode::Auto}, {"on", DeltaMode::On}, {"off", DeltaMode::Off}};
-    const Choice<Readback> readbacks[] = {
-        {"auto", Readback::Auto}, {"direct", Readback::Direct}, {"buffer", Readback::Buffer}};
-    const Choice<const char*> backends[] = {{"auto", "auto"}, {"egl", "egl"}, {"osmesa", "osmesa"}, {"glx", "glx"}};
     const char* backend = "auto";
-    if (auto r = choose("--display", a.display, displays, c.display); !r) return r;
-    if (auto r = choose("--tiling", a.tiling, tilings, c.tiling); !r) return r;
-    if (auto r = choose("--local-rendering", a.localRendering, localRenderings, c.localRendering); !r) return r;
-    if (auto r = choose("--gl", a.gl, backends, backend); !r) return r;
-    if (auto r = choose("--delta", a.delta, deltaModes, c.delta); !r) return r;
-    if (auto r = choose("--readback", a.readback, readbacks, c.readback); !r) return r;
+    if (auto r = choose("--display", a.display, kDisplayChoices, c.display); !r) return r;
+    if (auto r = choose("--tiling", a.tiling, kTilingChoices, c.tiling); !r) return r;
+    if (auto r = choose("--local-rendering", a.localRendering, kLocalRenderingChoices, c.localRendering); !r) return r;
+    if (auto r = choose("--gl", a.gl, kGlChoices, backend); !r) return r;
+    if (auto r = choose("--delta", a.delta, kDeltaChoices, c.delta); !r) return r;
+    if (auto r = choose("--readback", a.readback, kReadbackChoices, c.readback); !r) return r;
     c.glBackend = backend;
     return {};
 }
@@ -73,9 +66,7 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     c.fullScreen = a.fullScreen;
     c.placeThreads = !a.noPlacement;
     c.explain = a.explain;
-    const Choice<EntryChoice> entries[] = {
-        {"auto", EntryChoice::Auto}, {"glvnd", EntryChoice::Glvnd}, {"preload", EntryChoice::Preload}};
-    if (auto r = choose("--capture-via", a.captureVia, entries, options.captureVia); !r) return r.error();
+    if (auto r = choose("--capture-via", a.captureVia, kEntryChoices, options.captureVia); !r) return r.error();
     options.displayChosen = a.display.has_value();
     options.native = a.native;
     options.quiet = a.quiet;
