@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <unistd.h>
 
+#include "common/install/library_folder.hpp"
 #include "nodes/launch/base_name.hpp"
 
 namespace mural::launch {
@@ -98,15 +99,11 @@ std::string ownBinary() {
 
 Result<CaptureLibrary> findCaptureLibrary(const std::string& muralBinary) {
     namespace fs = std::filesystem;
-    const fs::path prefix = fs::path(muralBinary).parent_path().parent_path();
-    for (const char* folder : {"lib", "lib/mural"}) {
-        const fs::path library = prefix / folder / kCaptureLibraryName;
-        std::error_code failed;
-        if (fs::exists(library, failed)) {
-            return CaptureLibrary{library.string(), (prefix / folder / kEglVendorFileName).string()};
-        }
-    }
-    return Error{"the capture library " + (prefix / "lib" / kCaptureLibraryName).string() +
+    const fs::path folder = libraryFolder(muralBinary);
+    const fs::path library = folder / kCaptureLibraryName;
+    std::error_code failed;
+    if (fs::exists(library, failed)) return CaptureLibrary{library.string(), (folder / kEglVendorFileName).string()};
+    return Error{"the capture library " + library.string() +
                  " is missing; build all of Mural (cmake --build --preset release) or install it again"};
 }
 

@@ -36,7 +36,7 @@ constexpr std::string_view kCaptureLibraryName = "libGLX_mural.so.0";
 constexpr std::string_view kPreloadLibraryName = "libmural_preload.so";
 constexpr std::string_view kEglVendorFileName = "mural_egl_vendor.json";
 
-// Searches relative to the binary, in the build tree (../lib) and in an installation (../lib/mural).
+// Searches the folder of Mural's libraries (common/install/library_folder.hpp).
 Result<CaptureLibrary> findCaptureLibrary(const std::string& muralBinary);
 
 // Path of the running binary.

@@ -99,12 +99,14 @@ TEST(CaptureEnvironment, rejectsAFolderThatTheLoaderCannotName) {
 
 TEST(CaptureLibraryPlace, isFoundInTheBuildTreeAndInstalled) {
     const test::TemporaryFolder folder;
+    std::filesystem::create_directories(folder.at("lib"));
+    EXPECT_FALSE(findCaptureLibrary(folder.at("bin/mural")).ok());
+    folder.file("lib/libGLX_mural.so.0", "", 0644);
+    EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().path, folder.at("lib/libGLX_mural.so.0"));
     std::filesystem::create_directories(folder.at("lib/mural"));
     EXPECT_FALSE(findCaptureLibrary(folder.at("bin/mural")).ok());
     folder.file("lib/mural/libGLX_mural.so.0", "", 0644);
     EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().path, folder.at("lib/mural/libGLX_mural.so.0"));
-    folder.file("lib/libGLX_mural.so.0", "", 0644);
-    EXPECT_EQ(findCaptureLibrary(folder.at("bin/mural")).value().path, folder.at("lib/libGLX_mural.so.0"));
 }
 
 } // namespace

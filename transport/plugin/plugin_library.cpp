@@ -5,6 +5,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "common/install/library_folder.hpp"
+
 namespace mural {
 
 namespace {
@@ -28,10 +30,7 @@ std::string whyUnfit(const mural_transport_plugin* plugin, const std::string& sc
 
 std::string pluginFolder() {
     std::error_code failed;
-    const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-    const fs::path libraries = program.parent_path().parent_path() / "lib";
-    const fs::path own = libraries / "mural";
-    return (fs::is_directory(own, failed) ? own : libraries).string();
+    return libraryFolder(fs::read_symlink("/proc/self/exe", failed).string());
 }
 
 Result<const mural_transport_plugin*> openPlugin(const std::string& scheme, const std::string& folder) {

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <unistd.h>
 
+#include "common/install/library_folder.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/process_tree.hpp"
 #include "nodes/launch/program_check.hpp"
@@ -166,9 +167,12 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
 }
 
 Result<std::string> AccuracyRuns::scenesProgram() {
-    const std::string path = std::filesystem::path(launch::ownBinary()).parent_path() / "mural-scenes";
-    if (access(path.c_str(), X_OK) == 0) return path;
-    return Error{path + " is missing: build the target mural-scenes, or add a program after --"};
+    const std::string binary = launch::ownBinary();
+    const std::string built = std::filesystem::path(binary).parent_path() / "mural-scenes";
+    if (access(built.c_str(), X_OK) == 0) return built;
+    const std::string installed = std::filesystem::path(libraryFolder(binary)) / "mural-scenes";
+    if (access(installed.c_str(), X_OK) == 0) return installed;
+    return Error{built + " is missing: build the target mural-scenes, or add a program after --"};
 }
 
 Result<std::vector<OwnedPicture>> readPictures(const std::string& folder) {
