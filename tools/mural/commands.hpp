@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/mural/run/run_options.hpp"
@@ -22,6 +23,8 @@ struct StatOptions {
 };
 int statCommand(const StatOptions& options);
 int versionCommand();
+// details: of version_details.hpp.
+int verboseVersionCommand(const std::vector<std::pair<std::string, std::string>>& details);
 
 // Runs in a child of doctor with the environment of a captured program: checks that the capture library is loaded.
 int preloadProbeCommand();

@@ -22,11 +22,14 @@
 #include "tools/mural/config/config_command.hpp"
 #include "tools/mural/ctl/ctl_command.hpp"
 #include "tools/mural/daemon/discover.hpp"
+#include "tools/mural/help/complete_command.hpp"
+#include "tools/mural/help/help_command.hpp"
 #include "tools/mural/trace/dump_command.hpp"
 #include "tools/mural/netperf/netperf.hpp"
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
 #include "tools/mural/simulate/simulate_command.hpp"
+#include "tools/mural/version_details.hpp"
 #include "tools/mural/trace/replay_command.hpp"
 #include "tools/mural/trace/trim_command.hpp"
 #include "tools/mural/daemon/daemon_commands.hpp"
@@ -93,6 +96,7 @@ public:
                                  : app->get_name() == "bench"  ? " accuracy [-- PROGRAM ARGUMENTS...]"
                                  : app->get_name() == "replay" || app->get_name() == "dump" ? " FILE"
                                  : app->get_name() == "trim"                                ? " FILE FRAMES"
+                                 : app->get_name() == "help"                                ? " [COMMAND]"
                                  : app->get_name() == "call"                                ? " HOST MURAL ARGUMENTS..."
                                                                                             : "";
         return "Usage: mural " + app->get_name() + " [OPTIONS]" + rest + "\n";
@@ -109,6 +113,7 @@ public:
     CommandLine() {
         app_.formatter(std::make_shared<HelpFormatter>());
         app_.set_version_flag("--version", mural::cli::versionText(), "Print the version and exit");
+        app_.require_subcommand(0, 1); // later words may be names of commands, such as mural ctl help
         app_.footer("mural COMMAND --help describes a command.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  "
                     "mural stat\n  mural doctor");
         addRun();
@@ -322,9 +327,12 @@ private:
         mural::cli::describeDiscover(discover, discover_);
         addBench();
         addConfig();
-        add(
-            "version", "print the version", [] { return mural::cli::versionCommand(); },
-            "Example:\n  mural version\n\nExit status: 0.");
+        addHelp();
+        CLI::App& version = add(
+            "version", "print the version", [this] { return runVersion(); },
+            "Examples:\n  mural version\n  mural version --verbose      build, formats, libraries, and the files that "
+            "this binary finds\n\nExit status: 0.");
+        version.add_flag("--verbose", isVerbose_, "also print the build, formats, libraries and files");
         add(
             "preload-probe", "", [] { return mural::cli::preloadProbeCommand(); }, "")
             .group("");
@@ -375,6 +383,21 @@ private:
         mural::cli::describeSimulate(simulate, simulate_);
     }
 
+    int runVersion() {
+        return isVerbose_ ? mural::cli::verboseVersionCommand(mural::cli::versionDetails())
+                          : mural::cli::versionCommand();
+    }
+
+    void addHelp() {
+        CLI::App& help = add(
+            "help", "describe a command, or write the manual pages",
+            [this] { return mural::cli::helpCommand(app_, help_); }, mural::cli::kHelpFooter);
+        mural::cli::describeHelp(help, help_);
+        add(
+            "complete", "", [this] { return mural::cli::completeCommand(app_, line_.program); }, "")
+            .group("");
+    }
+
     void addDoctor() {
         CLI::App& doctor = add(
             "doctor", "check this machine, or the network, for Mural", [this] { return runDoctor(); },
@@ -406,6 +429,7 @@ private:
     mural::cli::TrimArguments trim_;
     int controlFd_ = -1;
     bool asJson_ = false;
+    bool isVerbose_ = false;
     bool onlyUnsupported_ = false;
     mural::cli::StatOptions stat_;
     mural::cli::ChangeArguments change_;
@@ -415,6 +439,7 @@ private:
     mural::cli::SimulateArguments simulate_;
     mural::cli::DiscoverArguments discover_;
     mural::cli::NetperfArguments netperf_;
+    mural::cli::HelpArguments help_;
     mural::cli::NetworkArguments networkArguments_;
     CLI::Option* network_ = nullptr;
     std::function<int()> action_;

@@ -14,4 +14,10 @@ int versionCommand() {
     return 0;
 }
 
+int verboseVersionCommand(const std::vector<std::pair<std::string, std::string>>& details) {
+    versionCommand();
+    for (const auto& [name, text] : details) fmt::print("{:<12}{}\n", name, text);
+    return 0;
+}
+
 } // namespace mural::cli

@@ -134,6 +134,28 @@ bool namesSession(const std::string& word) {
     return std::regex_match(word, kName);
 }
 
+std::vector<NextWord> nextWords(const std::vector<std::string>& words, const Json& operations) {
+    std::vector<NextWord> found;
+    if (!operations.is_array()) return found;
+    for (const Json& operation : operations) {
+        const std::vector<UsageWord> usage = usageWords(textOf(operation, "usage"));
+        if (words.size() >= usage.size()) continue;
+        const bool fits = std::ranges::all_of(words, [&, i = size_t{0}](const std::string& word) mutable {
+            const UsageWord& wanted = usage[i++];
+            return wanted.isArgument || word == wanted.word;
+        });
+        if (!fits) continue;
+        const UsageWord& next = usage[words.size()];
+        const Json* const argument = next.isArgument ? argumentOf(operation, next.word) : nullptr;
+        NextWord entry{next.word, argument != nullptr ? textOf(*argument, "kind") : "", textOf(operation, "name"),
+                       textOf(operation, "meaning")};
+        const bool isKnown = std::ranges::any_of(
+            found, [&](const NextWord& other) { return other.word == entry.word && entry.kind.empty(); });
+        if (!isKnown) found.push_back(std::move(entry));
+    }
+    return found;
+}
+
 Result<CommandRequest> requestOf(const std::vector<std::string>& words, const Json& operations) {
     if (words.empty()) return Error{"a command is required, such as status; help lists all"};
     if (operations.is_array()) {

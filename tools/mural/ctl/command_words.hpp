@@ -21,4 +21,14 @@ struct CommandRequest {
 // the nearest operations, or the usage.
 Result<CommandRequest> requestOf(const std::vector<std::string>& words, const nlohmann::json& operations);
 
+// A word that may follow the words of a request.
+struct NextWord {
+    std::string word;      // fixed, or the name of the argument
+    std::string kind;      // of the argument, such as "whole number"; empty: a fixed word
+    std::string operation; // that the words begin
+    std::string meaning;   // of the operation
+};
+// Returns the words that may follow `words`. operations: as for requestOf().
+std::vector<NextWord> nextWords(const std::vector<std::string>& words, const nlohmann::json& operations);
+
 } // namespace mural::cli
