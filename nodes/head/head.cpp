@@ -14,10 +14,12 @@
 #include "nodes/head/session/log_to_control.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
+#include "nodes/launch/launchers/create_launcher.hpp"
 #include "nodes/output/windows/app_window.hpp"
 #include "nodes/output/windows/redraw_request.hpp"
 #include "nodes/output/outputs.hpp"
 #include "nodes/output/files/png_files.hpp"
+#include "nodes/session/stream_build.hpp"
 #include "nodes/output/windows/wall_sink.hpp"
 #include "streamcodec/registry_digest.hpp"
 
@@ -25,7 +27,6 @@ namespace mural {
 namespace {
 
 constexpr int64_t kConfigPatienceMs = 10'000;
-constexpr int64_t kLaunchPatienceMs = 30'000;
 constexpr int64_t kRedrawMs = 1'000; // the request of a redraw; the end of the session may wait for it
 
 volatile std::sig_atomic_t endRequested = 0;
@@ -52,20 +53,24 @@ Result<SessionConfig> receiveConfig(ControlChannel& control) {
     return Error{"no session configuration on the control connection; start `mural head` with `mural run`"};
 }
 
-LaunchOptions launchOptionsOf(const SessionConfig& config) {
+Result<LaunchOptions> launchOptionsOf(const SessionConfig& config) {
     LaunchOptions options;
     options.isNative = !config.nodeProgram.empty();
     options.executable = options.isNative ? config.nodeProgram : launch::ownBinary();
-    options.remoteMural = config.remoteMural.empty() ? options.executable : config.remoteMural;
-    options.launchCommand = config.launchCommand;
     options.minNodes = config.minNodes;
+    options.patienceMs = config.startTimeoutMs;
+    LaunchSettings settings;
+    settings.how = config.launchCommand;
+    settings.secretFile = config.launchSecret;
+    settings.ownMural = launch::ownBinary();
+    settings.binary.program = config.remoteMural.empty() ? options.executable : config.remoteMural;
+    settings.binary.mural = options.isNative ? settings.ownMural : settings.binary.program;
+    settings.binary.isNative = options.isNative;
+    settings.version = {MURAL_VERSION, streamBuild()};
+    auto launcher = createLauncher(settings, launch::Environment::current());
+    if (!launcher) return launcher.error();
+    options.launcher = std::move(*launcher);
     return options;
-}
-
-Result<std::vector<LaunchedNode>> launch(const SessionConfig& config, const SessionPlan& plan,
-                                         const ControlChannel& control) {
-    return launchNodes(plan, launchOptionsOf(config), Deadline::inMs(kLaunchPatienceMs),
-                       [&] { return endRequested != 0 || control.broken(); });
 }
 
 // Returns the output path of a further canvas: a folder inside --out, or a video next to the video of --out.
@@ -142,13 +147,17 @@ Result<int> runSession(ControlChannel& control) {
         if (!made) return made.error();
         options.recorder = std::move(*made);
     }
-    auto nodes = launch(*config, plan, control);
+    auto launching = launchOptionsOf(*config);
+    if (!launching) return launching.error();
+    options.progress = std::make_shared<StartProgress>(monotonicNowNs());
+    auto nodes =
+        launchNodes(plan, *launching, *options.progress, [&] { return endRequested != 0 || control.broken(); });
     if (!nodes) return nodes.error();
     for (const LaunchedNode& node : *nodes) // swap barriers do not include an absent node
         if (!node.connection) plan.nodes[static_cast<size_t>(node.plan.node)].swapBarrier.clear();
-    options.startNode = [options = launchOptionsOf(*config)](const NodePlan& node) {
-        return startNode(node, options, Deadline::inMs(kLaunchPatienceMs));
-    };
+    options.readyPatienceMs = config->startTimeoutMs;
+    options.startNode = [launching = *launching](const NodePlan& node) { return startNode(node, launching); };
+    options.whyLaunchesEnd = [launcher = launching->launcher] { return launcher->whyOver(); };
     HeadSession session(*config, std::move(plan), std::move(*nodes), control, std::move(options));
     return session.run();
 }

@@ -1,6 +1,7 @@
 #include "nodes/render/head_connection.hpp"
 
 #include <iostream>
+#include <sstream>
 
 #include "common/log/log.hpp"
 #include "nodes/frame_spans/span_scope.hpp"
@@ -19,31 +20,54 @@ constexpr int64_t kChangeOverMs = 20'000;
 constexpr int64_t kConnectMs = 20'000;
 constexpr int64_t kJoinMs = 10'000;
 
-// Connects to host:port. The secret proves to the head that it started this node, and to the node that the peer is the
-// head.
-Result<std::unique_ptr<Connection>> connectByTcp(const NodeOptions& options) {
-    auto where = splitHostPort(options.connect);
-    if (!where || where->host.empty() || where->port == 0)
-        return Error{"--connect " + options.connect + ": give it as HOST:PORT, with a port from 1 to 65535"};
+constexpr int64_t kTryMs = 4'000; // for one of several endpoints
+
+std::vector<std::string> endpointsOf(const std::string& text) {
+    std::vector<std::string> all;
+    std::istringstream stream(text);
+    for (std::string one; std::getline(stream, one, ',');) all.push_back(one);
+    return all;
+}
+
+// Connects to the first endpoint that answers with the secret, and names its host in `headHost`. The secret proves to
+// the head that it started this node, and to the node that the peer is the head.
+Result<std::unique_ptr<Connection>> connectByTcp(const NodeOptions& options, std::string& headHost) {
+    std::vector<HostPort> endpoints;
+    for (const std::string& text : endpointsOf(options.connect)) {
+        auto where = splitHostPort(text);
+        if (!where || where->host.empty() || where->port == 0)
+            return Error{"--connect " + options.connect +
+                         ": give it as HOST:PORT, with a port from 1 to 65535; several separated by commas"};
+        endpoints.push_back(std::move(*where));
+    }
     std::string line;
     std::getline(std::cin, line);
     const auto secret = sessionSecretFromHex(line);
     if (!secret) return Error{"no session secret on standard input; nodes are started by `mural run --nodes`"};
-    const Deadline deadline = Deadline::inMs(kConnectMs);
-    auto connection = connectTcp(where->host, where->port, deadline);
-    if (!connection) return connection.error();
-    auto secure = SecureConnection::connecting(std::move(*connection), options.name, secret.value(), deadline);
-    if (!secure) return secure.error();
-    return std::unique_ptr<Connection>(std::move(*secure));
+    std::string why;
+    for (const HostPort& where : endpoints) {
+        const Deadline deadline = Deadline::inMs(endpoints.size() == 1 ? kConnectMs : kTryMs);
+        auto connection = connectTcp(where.host, where.port, deadline);
+        auto secure = connection
+                          ? SecureConnection::connecting(std::move(*connection), options.name, secret.value(), deadline)
+                          : Result<std::unique_ptr<SecureConnection>>(connection.error());
+        if (secure) {
+            headHost = where.host;
+            return std::unique_ptr<Connection>(std::move(*secure));
+        }
+        why += (why.empty() ? "" : "; ") + secure.error().message;
+    }
+    return Error{why};
 }
 
 } // namespace
 
 Result<std::unique_ptr<HeadConnection>> HeadConnection::open(const NodeOptions& options) {
-    auto connection = options.connectFd >= 0 ? openSharedMemory(options.connectFd) : connectByTcp(options);
+    std::string headHost;
+    auto connection = options.connectFd >= 0 ? openSharedMemory(options.connectFd) : connectByTcp(options, headHost);
     if (!connection) return connection.error();
     std::unique_ptr<HeadConnection> line(new HeadConnection(std::move(*connection)));
-    if (auto head = splitHostPort(options.connect)) line->headHost_ = head->host;
+    line->headHost_ = std::move(headHost);
     return line;
 }
 

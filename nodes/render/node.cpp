@@ -207,6 +207,7 @@ private:
         if (setup_.build != streamBuild())
             return fail("the head uses another stream format (" + (setup_.build.empty() ? "unnamed" : setup_.build) +
                         ") than this node (" + streamBuild() + "): install the same version of mural on both machines");
+        line_->send(wire::NodeMessage::Alive, {}); // the versions are equal; GL may take a while
         auto platform = gl::openPlatform(setup_.glBackend);
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = describeNode(**platform);

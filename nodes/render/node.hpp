@@ -9,7 +9,7 @@ namespace mural {
 
 struct NodeOptions {
     int connectFd = -1;  // shared memory, inherited from the head
-    std::string connect; // or host:port; the session's secret arrives on standard input
+    std::string connect; // or host:port, several separated by commas; the session's secret arrives on standard input
     std::string name;    // with `connect`: identifies the secret to the head
 };
 

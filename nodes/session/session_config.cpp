@@ -71,6 +71,8 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("spareHosts", c.spareHosts);
     visit("movedHosts", c.movedHosts);
     visit("launchCommand", c.launchCommand);
+    visit("launchSecret", c.launchSecret);
+    visit("startTimeoutMs", c.startTimeoutMs);
     visit("stream", c.stream);
     visit("delta", c.delta);
     visit("cacheBytes", c.cacheBytes, 1 << 20);

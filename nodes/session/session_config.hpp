@@ -38,17 +38,19 @@ struct SessionConfig {
     int tileWidth = 0, tileHeight = 0; // --tile-queue: tile size in pixels, replaces columns and rows; 0: no queue
     int chunks = 0; // --chunk-queue: number of chunks of a picture's draws, for nodes of --db; 0: fixed shares
     balance::Balance balance = balance::Balance::AsInFile; // --balance: the equalizers of areas and ranges
-    int localNodes = 0;                  // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
-    std::vector<std::string> hosts;      // --nodes
-    std::vector<std::string> spareHosts; // --spare-nodes: hosts that take over the nodes of a lost one, in this order
-    std::vector<std::string> movedHosts; // "FROM=TO": nodes of FROM run on TO; one entry per replacement, in order
-    std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
-    std::string stream = "auto";                        // --stream: transport to other machines: auto, tcp, rsp://…
-    DeltaMode delta = DeltaMode::Auto;                  // --delta: delta coding
-    int64_t cacheBytes = int64_t{1} << 30;              // --cache-size: dictionary size, in each node and in the head
-    int restartNodes = 3;                               // --restart-nodes: consecutive restarts of a lost node
-    int minNodes = 0;        // --min-nodes: number of nodes for the start, others may join later; 0: all
-    std::string remoteMural; // --remote-mural: path of mural on the hosts; empty: the local path
+    int localNodes = 0;                    // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
+    std::vector<std::string> hosts;        // --nodes
+    std::vector<std::string> spareHosts;   // --spare-nodes: hosts that take over the nodes of a lost one, in this order
+    std::vector<std::string> movedHosts;   // "FROM=TO": nodes of FROM run on TO; one entry per replacement, in order
+    std::string launchCommand = "ssh";     // --launch: ssh, slurm, pmix, or a command that runs a command on a host
+    std::string launchSecret;              // --secret: file with the secret of waiting nodes (@NAME); empty: none
+    int64_t startTimeoutMs = 30'000;       // --start-timeout: for the connections of all nodes, then for their GL
+    std::string stream = "auto";           // --stream: transport to other machines: auto, tcp, rsp://…
+    DeltaMode delta = DeltaMode::Auto;     // --delta: delta coding
+    int64_t cacheBytes = int64_t{1} << 30; // --cache-size: dictionary size, in each node and in the head
+    int restartNodes = 3;                  // --restart-nodes: consecutive restarts of a lost node
+    int minNodes = 0;                      // --min-nodes: number of nodes for the start, others may join later; 0: all
+    std::string remoteMural;               // --remote-mural: path of mural on the hosts; empty: the local path
     // --node-program: the program with the native API that the nodes run; empty: the nodes replay captured programs
     std::string nodeProgram;
     std::string configFile;                               // --config; empty: the other options describe the wall

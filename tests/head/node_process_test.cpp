@@ -1,5 +1,5 @@
 // Real processes: their environment, input and end.
-#include "nodes/head/membership/node_process.hpp"
+#include "nodes/launch/launchers/node_process.hpp"
 
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "nodes/head/membership/node_launcher.hpp"
+#include "nodes/launch/launchers/command_launcher.hpp"
 #include "common/ipc/file_descriptor.hpp"
 
 namespace mural {
@@ -22,6 +23,16 @@ std::unique_ptr<NodeProcess> shell(const std::string& script, const std::string&
     auto started = NodeProcess::start({{"sh", "-c", script}, input, -1});
     EXPECT_TRUE(started.ok());
     return started ? std::move(*started) : nullptr;
+}
+
+Result<std::vector<LaunchedNode>> launched(const SessionPlan& plan, const std::string& executable,
+                                           std::shared_ptr<Launcher> launcher, bool isCancelled = false) {
+    LaunchOptions options;
+    options.executable = executable;
+    options.launcher = std::move(launcher);
+    options.patienceMs = kEndPatienceMs;
+    StartProgress progress(monotonicNowNs());
+    return launchNodes(plan, options, progress, [isCancelled] { return isCancelled; });
 }
 
 TEST(NodeProcess, reportsHowItEnded) {
@@ -68,8 +79,7 @@ TEST(NodeLauncher, reportsANodeThatEndsAtOnceInOneLine) {
     SessionConfig config;
     config.hosts = {"localhost"};
     const SessionPlan plan = planSession(config, "here");
-    const auto nodes =
-        launchNodes(plan, {"/bin/false", "/bin/false", ""}, Deadline::inMs(kEndPatienceMs), [] { return false; });
+    const auto nodes = launched(plan, "/bin/false", nullptr);
     ASSERT_FALSE(nodes.ok());
     EXPECT_NE(nodes.error().message.find("node 0 (localhost) did not start: exit status 1"), std::string::npos)
         << nodes.error().message;
@@ -79,18 +89,22 @@ TEST(NodeLauncher, usesTheLaunchCommandForAnotherHost) {
     SessionConfig config;
     config.hosts = {"elsewhere.invalid"};
     const SessionPlan plan = planSession(config, "here");
-    const auto nodes = launchNodes(plan, {"/bin/false", "/opt/my mural", "/bin/false --flag"},
-                                   Deadline::inMs(kEndPatienceMs), [] { return false; });
+    NodeBinary binary;
+    binary.program = "/opt/my mural";
+    const auto launcher = std::make_shared<CommandLauncher>(
+        std::vector<std::string>{"sh", "-c", "echo \"host $0, arguments $*\" >&2; exit 7"}, binary);
+    const auto nodes = launched(plan, "/bin/false", launcher);
     ASSERT_FALSE(nodes.ok());
-    EXPECT_NE(nodes.error().message.find("(elsewhere.invalid) did not start: exit status 1"), std::string::npos)
-        << nodes.error().message;
+    for (const char* part : {"(elsewhere.invalid) did not start: exit status 7 of \"sh -c ", "host elsewhere.invalid, ",
+                             "'/opt/my mural' node --as node0 --connect "})
+        EXPECT_NE(nodes.error().message.find(part), std::string::npos) << nodes.error().message;
 }
 
 TEST(NodeLauncher, stopsWhenTheSessionIsCancelled) {
     SessionConfig config;
     config.hosts = {"localhost"};
     const SessionPlan plan = planSession(config, "here");
-    auto sleeper = launchNodes(plan, {"/bin/cat", "", ""}, Deadline::inMs(kEndPatienceMs), [] { return true; });
+    auto sleeper = launched(plan, "/bin/cat", nullptr, true);
     ASSERT_FALSE(sleeper.ok());
 }
 

@@ -81,7 +81,7 @@ TEST(SessionConfig, usesDefaultsForMissingFields) {
     const auto c = sessionConfigFromJson(R"({"session":"s"})");
     ASSERT_TRUE(c.ok());
     EXPECT_EQ(c.value().latency, 1);
-    EXPECT_EQ(c.value().launchCommand, "ssh -o BatchMode=yes");
+    EXPECT_EQ(c.value().launchCommand, "ssh");
 }
 
 TEST(NodeSetup, limitsZooms) {

@@ -10,6 +10,9 @@
 namespace mural::cli {
 
 int runCommand(const RunOptions& options);
+// The rank of this process if it is a further process of mpirun or srun, which runs nodes for rank 0; otherwise 0.
+int nodeRankOf(const RunOptions& options);
+int runRank(const RunOptions& options, int rank);
 int doctorCommand(bool asJson);
 int listCommandsCommand(bool onlyUnsupported);
 

@@ -36,6 +36,7 @@ HeadEvent::Kind kindOf(const std::string& name) {
     if (name == "frame") return Kind::Frame;
     if (name == "frames-reached") return Kind::FramesReached;
     if (name == "stop-requested") return Kind::StopRequested;
+    if (name == "job-over") return Kind::JobOver;
     if (name == "wall-lost") return Kind::WallLost;
     if (name == "say") return Kind::Say;
     if (name == "report") return Kind::Report;

@@ -79,7 +79,19 @@ struct SessionReport {
 };
 
 struct HeadEvent {
-    enum class Kind { Ready, Error, Clients, Frame, FramesReached, StopRequested, WallLost, Say, Report, Unknown };
+    enum class Kind {
+        Ready,
+        Error,
+        Clients,
+        Frame,
+        FramesReached,
+        StopRequested,
+        JobOver,
+        WallLost,
+        Say,
+        Report,
+        Unknown
+    };
     Kind kind = Kind::Unknown;
     std::string text;                 // Error, Say
     std::vector<std::string> explain; // Ready

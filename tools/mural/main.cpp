@@ -12,10 +12,13 @@
 
 #include "common/log/process_log.hpp"
 #include "nodes/head/head.hpp"
+#include "nodes/launch/environment.hpp"
+#include "nodes/launch/launchers/starter/starter.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/render/node.hpp"
 #include "nodes/replay/engine/make_replay.hpp"
 #include "tools/mural/accuracy/accuracy_command.hpp"
+#include "nodes/session/stream_build.hpp"
 #include "nodes/trace_player/player.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/change/change_command.hpp"
@@ -29,6 +32,7 @@
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
 #include "tools/mural/simulate/simulate_command.hpp"
+#include "tools/mural/run/slurm_allocation.hpp"
 #include "tools/mural/version_details.hpp"
 #include "tools/mural/trace/replay_command.hpp"
 #include "tools/mural/trace/trim_command.hpp"
@@ -123,6 +127,7 @@ public:
     }
 
     int perform(int count, char** arguments) {
+        arguments_.assign(arguments + 1, arguments + count);
         line_ = split(count, arguments);
         if (!line_.words.empty() && !line_.words.front().starts_with("-") && !isCommand(line_.words.front())) {
             return usageError("mural", "unknown command " + line_.words.front());
@@ -182,9 +187,17 @@ private:
         if (!rest.empty() && rest.front().starts_with("-"))
             return usageError("mural run", "unknown option " + rest.front());
         runArguments_.program = programOf(*run_, line_);
+        if (runArguments_.slurm && std::getenv("SLURM_JOB_ID") == nullptr) return runInAllocation();
         const auto options = mural::cli::runOptionsFrom(runArguments_);
         if (!options.ok()) return usageError("mural run", options.error().message);
+        if (const int rank = mural::cli::nodeRankOf(options.value()); rank > 0)
+            return mural::cli::runRank(options.value(), rank);
         return mural::cli::runCommand(options.value());
+    }
+
+    int runInAllocation() {
+        return mural::cli::becomeSalloc(
+            mural::cli::sallocCommandOf(mural::launch::ownBinary(), arguments_, *runArguments_.slurm));
     }
 
     void addRecordings() {
@@ -238,6 +251,10 @@ private:
             "accepts heads with the secret of this file\n\nExit status: 0, 1 if the node could not draw or wait, 2 for "
             "a bad argument.");
         mural::cli::describeWait(node, wait_);
+        CLI::App& starter = add(
+            "starter", "", [this] { return runStarter(); }, "");
+        starter.group("");
+        starter.add_option("--program", starterProgram_);
         call_ = &add(
             "call",
             "start a node through a daemon (mural node --wait): a launch command for mural run and mural doctor",
@@ -253,6 +270,16 @@ private:
                         "HOST:PORT of the head; the session's secret is read from standard input")
             ->type_name("HOST:PORT");
         node.add_option("--as", node_.name, "with --connect: identifier of this node's secret")->type_name("NAME");
+    }
+
+    // Started by heads on other hosts.
+    int runStarter() {
+        mural::launch::StarterOptions options;
+        options.binary.isNative = !starterProgram_.empty();
+        options.binary.program = starterProgram_.empty() ? mural::launch::ownBinary() : starterProgram_;
+        options.version = mural::cli::muralVersion();
+        options.build = mural::streamBuild();
+        return mural::launch::runStarter(options);
     }
 
     int runCall() {
@@ -416,10 +443,12 @@ private:
     }
 
     CLI::App app_{"Mural: unmodified OpenGL programs on display walls and clusters.", "mural"};
+    std::vector<std::string> arguments_;
     SplitLine line_;
     CLI::App* run_ = nullptr;
     CLI::App* call_ = nullptr;
     mural::cli::CallArguments callArguments_;
+    std::string starterProgram_; // with the native API; empty: mural
     mural::cli::WaitArguments wait_;
     mural::cli::RunArguments runArguments_;
     mural::NodeOptions node_;

@@ -36,7 +36,7 @@ bool rectangleFits(int32_t x, int32_t y, int32_t w, int32_t h, uint64_t pixelByt
 } // namespace
 
 NodeConnection::NodeConnection(NodeLocation location, std::unique_ptr<Connection> connection,
-                               std::unique_ptr<NodeProcess> process, NodeEvents& events)
+                               std::unique_ptr<RunningNode> process, NodeEvents& events)
     : location_(std::move(location)),
       connection_(std::move(connection)),
       process_(std::move(process)),
@@ -54,7 +54,7 @@ void NodeConnection::startReading() {
 
 std::string NodeConnection::describe() const {
     std::string text = "node " + std::to_string(location_.node) + " (" + location_.where;
-    if (process_) text += ", pid " + std::to_string(process_->pid());
+    if (const pid_t pid = process_ ? process_->pid() : 0; pid > 0) text += ", pid " + std::to_string(pid);
     return text + ")";
 }
 
@@ -187,6 +187,7 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
     case NodeMessage::ObjectRequest: return readObjectRequest(header.sizeBytes);
     case NodeMessage::Alive:
         if (header.sizeBytes != 0) break;
+        isHeard_ = true;
         return {};
     case NodeMessage::ViewReached: return readInView(header.sizeBytes);
     case NodeMessage::Turns: return readTurns(header.sizeBytes);

@@ -13,7 +13,7 @@
 
 #include "common/base/result.hpp"
 #include "nodes/head/results/byte_buffer.hpp"
-#include "nodes/head/membership/node_process.hpp"
+#include "nodes/launch/launchers/running_node.hpp"
 #include "nodes/frame_transfer/picture_unpacker.hpp"
 #include "nodes/frame_transfer/transfer_scale.hpp"
 #include "streamcodec/wire/frame_spans.hpp"
@@ -61,7 +61,7 @@ class NodeConnection {
 public:
     NodeConnection(NodeLocation location,
                    std::unique_ptr<Connection> connection, // null: the node has not connected and counts as lost
-                   std::unique_ptr<NodeProcess> process,   // null: not a child of this process (tests)
+                   std::unique_ptr<RunningNode> process,   // null: not a child of this process (tests)
                    NodeEvents& events);
     ~NodeConnection();
 
@@ -116,6 +116,8 @@ public:
     void watch(int64_t nowNs, int64_t patienceNs);
 
     [[nodiscard]] bool alive() const { return alive_.load(std::memory_order_acquire); }
+    // True after the node's first message: it accepts the head's version.
+    [[nodiscard]] bool isHeard() const { return isHeard_.load(std::memory_order_relaxed); }
     [[nodiscard]] bool goodbyeReceived() const { return goodbyeReceived_.load(std::memory_order_acquire); }
     [[nodiscard]] bool readerEnded() const { return readerEnded_.load(std::memory_order_acquire); }
     // Returns the time of the last message or packet; the current time while the head processes a message.
@@ -128,7 +130,7 @@ public:
     // Time since the last message.
     [[nodiscard]] int64_t silentNs(int64_t nowNs) const { return nowNs - std::min(nowNs, receivedNs_.load()); }
     [[nodiscard]] const NodeLocation& location() const { return location_; }
-    [[nodiscard]] NodeProcess* process() { return process_.get(); }
+    [[nodiscard]] RunningNode* process() { return process_.get(); }
     [[nodiscard]] std::string describe() const; // "node 2 (local, pid 77)"
 
     // Closes the connection of a node that has sent Goodbye, and waits for the end of its process until the deadline.
@@ -167,13 +169,14 @@ private:
 
     const NodeLocation location_;
     std::unique_ptr<Connection> connection_;
-    const std::unique_ptr<NodeProcess> process_;
+    const std::unique_ptr<RunningNode> process_;
     NodeEvents& events_;
     Zoom transferScale_;                        // scale of its pictures in transfer
     std::unique_ptr<PictureUnpacker> pictures_; // null: pictures are not encoded
     std::atomic<int64_t> pictureBytes_{0}, pictureRawBytes_{0};
     std::thread reader_;
     std::atomic<bool> alive_;
+    std::atomic<bool> isHeard_{false};
     std::atomic<bool> goodbyeReceived_{false};
     std::atomic<bool> byMulticast_{false};
     std::atomic<bool> joinsGroup_{false};

@@ -13,7 +13,7 @@ namespace {
 constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kProofPatienceMs = 5000;
 const std::string kName = "node";
-constexpr int kMaxChecked = 32; // limit of concurrent unauthenticated connections
+constexpr int kMaxChecked = 256; // limit of concurrent unauthenticated connections
 
 int portOf(const std::string& description) {
     const size_t colon = description.rfind(':');

@@ -173,6 +173,8 @@ void HeadSession::tick() {
     watchNodes(nowNs);
     programs_->reap();
     beginPlanChange();
+    watchStart(StartStep::FirstFrame);
+    watchLaunches(nowNs);
     returns_->tick(nowNs);
     endLeftNodes(nowNs);
     reportProgress(nowNs);

@@ -32,6 +32,7 @@
 #include "nodes/head/membership/node_capabilities.hpp"
 #include "nodes/head/membership/node_launcher.hpp"
 #include "nodes/head/membership/node_restarter.hpp"
+#include "nodes/head/membership/start_progress.hpp"
 #include "nodes/head/broadcast/stream_broadcaster.hpp"
 #include "nodes/head/frames/picture_assembler.hpp"
 #include "nodes/head/frames/picture_output.hpp"
@@ -78,6 +79,9 @@ struct HeadOptions {
     std::function<bool()> interrupted;               // returns whether a signal requests the end; may be empty
     // Restarts a lost node. Called by the session's thread. Empty: nodes are not restarted.
     std::function<Result<StartingNode>(const NodePlan&)> startNode;
+    // Returns why no node can be started any more, such as the end of a batch job; empty: they can. May be empty.
+    std::function<std::string()> whyLaunchesEnd;
+    std::shared_ptr<StartProgress> progress; // of the nodes; null: in tests
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;
     int64_t drainPatienceMs = 10'000;
@@ -212,6 +216,8 @@ private:
     PictureOutputConfig outputConfig();
     NodeSetup setupFor(const NodePlan& plan);
     Result<void> awaitReady();
+    void watchStart(StartStep wanted);
+    void watchLaunches(int64_t nowNs);
     Result<void> checkSize();
     void openTables();
     [[nodiscard]] compound::PixelSize sizeOfWall() const;
@@ -268,6 +274,7 @@ private:
     std::shared_ptr<const SessionPlan> overlayPlan_; // the plan of overlayNumbers_
     std::optional<OverlayNumbers> overlayNumbers_; // while the head's windows show statistics; used by the main thread
     int64_t overlayNumbersNs_ = 0;                 // the latest numbers
+    int64_t launchesWatchedNs_ = 0;                // the latest call of watchLaunches()
     int64_t probedNs_ = 0;                         // the latest ClockProbe
     CreditPacer pacer_;
     FrameTracker frames_;

@@ -214,7 +214,38 @@ Result<void> HeadSession::awaitReady() {
             }
         }
         if (finishRequested(Deadline::inMs(10))) return Error{"the session was stopped before its nodes were ready"};
+        watchStart(StartStep::GlReady);
     }
+}
+
+// Shows which nodes are late with a step of the start.
+void HeadSession::watchStart(StartStep wanted) {
+    if (!options_.progress) return;
+    const int64_t nowNs = monotonicNowNs();
+    for (int node = 0; node < nodeCount(); ++node) {
+        if (nodes_.link(node).isHeard()) options_.progress->reached(node, StartStep::Checked, nowNs);
+        const std::lock_guard lock(mutex_);
+        const auto index = static_cast<size_t>(node);
+        if (ready_[index] && !absences_.contains(node)) options_.progress->reached(node, StartStep::GlReady, nowNs);
+        if (totals_[index].cpuSeconds > 0) options_.progress->reached(node, StartStep::FirstFrame, nowNs);
+    }
+    const auto why = [this](int node) {
+        const NodeConnection& link = nodes_.link(node);
+        return link.alive() ? std::string() : std::string("it was lost");
+    };
+    for (const std::string& line : options_.progress->lateTable(wanted, nowNs, why)) log::info(log::Topic::Node, line);
+}
+
+// Ends the session if its batch job is over.
+void HeadSession::watchLaunches(int64_t nowNs) {
+    constexpr int64_t kEveryNs = kNsPerS;
+    if (!options_.whyLaunchesEnd || nowNs - launchesWatchedNs_ < kEveryNs) return;
+    launchesWatchedNs_ = nowNs;
+    const std::string why = options_.whyLaunchesEnd();
+    if (why.empty()) return;
+    options_.whyLaunchesEnd = {};
+    log::error(log::Topic::Session, why, "; the session ends");
+    announce({{"event", "job-over"}});
 }
 
 // Checks the wall's size only: larger windows of programs are detected when they appear. Requires mutex_.

@@ -64,8 +64,11 @@ public:
         const SessionPlan plan = makePlan(config, "here").value();
         // The session's own thread launches the nodes, which live as long as that thread.
         thread_ = std::thread([this, plan, executable] {
-            auto nodes =
-                launchNodes(plan, {executable, executable, ""}, Deadline::inMs(kTestPatienceMs), [] { return false; });
+            LaunchOptions launching;
+            launching.executable = executable;
+            launching.patienceMs = kTestPatienceMs;
+            StartProgress progress(monotonicNowNs());
+            auto nodes = launchNodes(plan, launching, progress, [] { return false; });
             if (!nodes) {
                 control_->error(nodes.error().message);
                 status_ = 1;

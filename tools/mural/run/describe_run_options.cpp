@@ -7,11 +7,40 @@ namespace mural::cli {
 
 namespace {
 
+void describeLaunchOptions(CLI::App& command, RunArguments& a) {
+    a.startsNodes = true;
+    command
+        .add_option("--launch", a.launch,
+                    "way to start nodes on hosts: auto, local (this machine), ssh, slurm, pmix, or a command that runs "
+                    "a command on a host (auto: slurm inside of a job, otherwise ssh)")
+        ->type_name("HOW");
+    command
+        .add_option("--hostfile", a.hostFile, "hosts of the nodes, one per line, each with slots=N for N nodes (none)")
+        ->type_name("FILE");
+    command.add_option("--per-host", a.perHost, "nodes on each host of --nodes, --hostfile or the batch job (1)")
+        ->type_name("N");
+    command
+        .add_option("--slurm", a.slurm,
+                    "outside of a Slurm job: request one with these options of salloc, such as \"-N4 -t 60\", and run "
+                    "in it")
+        ->type_name("OPTIONS");
+    command
+        .add_option("--secret", a.launchSecret,
+                    "file with the secret of waiting nodes (mural node --wait); --nodes names them @NAME")
+        ->type_name("FILE");
+    command
+        .add_option("--start-timeout", a.startTimeout,
+                    "seconds for the connections of all nodes, and again for their GL (30)")
+        ->type_name("SECONDS");
+}
+
 constexpr const char* kRunFooter = R"(Examples:
   mural run -- glxgears                                  one node, into the program's own window
   mural run --tiles 2x2 --frames 90 --out shots -- glxgears
                                                          90 frames on 4 local nodes, as PNG files
   mural run --tiles 4x2 --nodes wall1,wall2 --display windows --fullscreen -- app
+  mural run --slurm "-N4 -t 60" --tiles 2x2 -- app       nodes on the four hosts of a new Slurm job
+  mpirun -n 5 mural run --tiles 2x2 -- app               nodes are the ranks 1 to 4
   mural run --size 7680x4320 --out wall.mp4 -- app       the program sees a screen of that size
   mural run --subpixel 4 -- glxgears                     each pixel is the mean of 4 samples, one per node
   mural run --stereo anaglyph --eye-base 1 --focus 40 -- glxgears
@@ -69,8 +98,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_flag("--no-placement", a.noPlacement, "leave thread placement to the kernel");
     command.add_flag("--explain", a.explain, "print the selected decomposition and rewriting, with reasons");
     command.add_flag("--native", a.native, "run without Mural; count frames and time");
-    command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")
-        ->type_name("CMD");
+    describeLaunchOptions(command, a);
     command
         .add_option("--stream", a.stream,
                     "transport of the stream to other machines: auto (multicast for two or more), tcp, or "

@@ -1,5 +1,4 @@
 // Options of `mural run` for the render nodes, their start, and the stream to them.
-#include <algorithm>
 #include <fmt/format.h>
 #include <tuple>
 
@@ -36,32 +35,12 @@ Result<void> checkStream(const std::string& stream) {
     return {};
 }
 
-Result<void> readHosts(const char* option, const OptionText& text, std::vector<std::string>& hosts) {
-    if (!text) return {};
-    hosts = listOf(*text);
-    const bool bad = std::any_of(hosts.begin(), hosts.end(), [](const std::string& h) {
-        return h.empty() || h.front() == '-' || h.find_first_of(" \t\"'=") != std::string::npos;
-    });
-    if (bad) return badValue(option, *text, "must be host names separated by commas, such as wall1,wall2");
-    // Rejects numbers as host names, because connecting to them would only time out.
-    const bool counts = std::any_of(hosts.begin(), hosts.end(), [](const std::string& h) {
-        return h.find_first_not_of("0123456789") == std::string::npos;
-    });
-    if (counts)
-        return badValue(
-            option, *text,
-            "must be host names, such as wall1,wall2; --local-nodes sets the number of nodes on this machine");
-    return {};
-}
-
 } // namespace
 
 Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
-    int64_t local = 0;
+    int64_t local = c.localNodes; // --launch local
     if (auto r = readNumber("--local-nodes", a.localNodes, 1, kMaxNodes, local); !r) return r;
     c.localNodes = static_cast<int>(local);
-    if (auto r = readHosts("--nodes", a.nodes, c.hosts); !r) return r;
-    if (auto r = readHosts("--spare-nodes", a.spareNodes, c.spareHosts); !r) return r;
     const int requested = c.localNodes + static_cast<int>(c.hosts.size());
     const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
     if (requested > 0 && !a.tiles && !a.tileQueue)
@@ -71,7 +50,6 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
             fmt::format("{} render nodes for {} tiles{}: each node needs a tile; give more --tiles or fewer nodes",
                         requested, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
     }
-    if (a.launch) c.launchCommand = *a.launch;
     if (a.stream) {
         c.stream = *a.stream;
         if (auto r = checkStream(c.stream); !r) return r;

@@ -1,7 +1,10 @@
 // `mural run`: checks everything that can fail before it starts a process, then runs the session.
+#include <algorithm>
 #include <cstdio>
 
+#include "common/log/log.hpp"
 #include "nodes/launch/gl_libraries.hpp"
+#include "nodes/launch/launchers/pmix_launcher.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/run/native_program.hpp"
@@ -37,7 +40,33 @@ int complain(const std::string& text, int status) {
     return status;
 }
 
+// The program is no part of the processes that mpirun or srun has started.
+void removeRank(launch::Environment& environment) {
+    const launch::Environment all = environment;
+    for (const std::string& entry : all.entries())
+        for (const char* const prefix : {"PMIX_", "OMPI_", "PMI_"})
+            if (entry.starts_with(prefix)) environment.unset(entry.substr(0, entry.find('=')));
+}
+
 } // namespace
+
+int nodeRankOf(const RunOptions& options) {
+    if (options.config.launchCommand != "pmix") return 0;
+    return std::max(0, launch::pmixPlaceOf(launch::Environment::current()).rank);
+}
+
+int runRank(const RunOptions& options, int rank) {
+    NodeBinary binary;
+    binary.program = options.config.nodeProgram.empty() ? launch::ownBinary() : options.config.nodeProgram;
+    binary.isNative = !options.config.nodeProgram.empty();
+    if (!binary.isNative) {
+        const auto program = launch::checkProgram(options.program.front(),
+                                                  launch::Environment::current().get("PATH").value_or("/usr/bin:/bin"));
+        binary.isNative = program.ok() && usesNativeApi(program);
+        if (binary.isNative) binary.program = program.path;
+    }
+    return runPmixRank(rank, binary, options.config.startTimeoutMs);
+}
 
 int runCommand(const RunOptions& options) {
     if (!options.configText.empty()) {
@@ -52,6 +81,7 @@ int runCommand(const RunOptions& options) {
     run.programEnvironment = launch::Environment::current();
     run.headEnvironment = run.programEnvironment;
     launch::removeCapture(run.headEnvironment);
+    if (run.config.launchCommand == "pmix") removeRank(run.programEnvironment);
 
     const launch::ProgramCheck program =
         launch::checkProgram(options.program.front(), run.programEnvironment.get("PATH").value_or("/usr/bin:/bin"));
@@ -68,6 +98,8 @@ int runCommand(const RunOptions& options) {
 
     run.headCommand = {launch::ownBinary(), "head"};
     Console console(options.quiet);
+    if (options.config.explain && !options.launchChoice.empty()) Console(true).error(options.launchChoice);
+    log::debug(log::Topic::Launch, options.launchChoice);
     for (const std::string& notice : options.notices) console.say(notice);
     for (const std::string& notice : {unseenPictures(options, run), earlierPictures(run.config.out)})
         if (!notice.empty()) console.say(notice);

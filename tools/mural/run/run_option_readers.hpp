@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/base/result.hpp"
+#include "nodes/launch/environment.hpp"
 #include "nodes/session/session_config.hpp"
 #include "tools/mural/run/run_options.hpp"
 
@@ -16,7 +17,10 @@ constexpr int kMaxNodes = 1024;
 Result<void> readSizes(const RunArguments& a, SessionConfig& c);
 // Passes of a frame: stereo, pixel, subpixel, time-multiplex, sort-last, zoom.
 Result<void> readPasses(const RunArguments& a, SessionConfig& c);
-// Render nodes, their start, and the stream to them.
+// The hosts of nodes and their launcher. Returns the choice and its reason, for --explain; empty: no other hosts.
+// environment: of this process; it describes the batch job.
+Result<std::string> readLaunch(const RunArguments& a, const launch::Environment& environment, SessionConfig& c);
+// The nodes of readLaunch(), nodes of this machine, and the stream to them.
 Result<void> readNodes(const RunArguments& a, SessionConfig& c);
 // --config and the options that select from the file. The file defines wall and nodes; options for them are errors.
 Result<void> readConfigFile(const RunArguments& a, RunOptions& options);

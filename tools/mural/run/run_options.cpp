@@ -52,6 +52,9 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     if (auto r = readNumber("--latency", a.latency, 0, kMaxLatency, latency); !r) return r.error();
     c.latency = static_cast<int>(latency);
     if (auto r = readPasses(a, c); !r) return r.error();
+    auto choice = readLaunch(a, launch::Environment::current(), c);
+    if (!choice) return choice.error();
+    options.launchChoice = std::move(*choice);
     if (auto r = readNodes(a, c); !r) return r.error();
     if (auto r = readConfigFile(a, options); !r) return r.error();
     int64_t verify = 0;

@@ -26,16 +26,19 @@ struct RunOptions {
     std::string configText;           // --print-config: equivalent configuration; empty: not requested
     std::vector<std::string> notices; // warnings about the configuration file
     std::string reportFile;           // --report; empty: none
+    std::string launchChoice;         // the launcher and the reason, for --explain; empty: no other hosts
     std::vector<std::string> program; // name and arguments
 };
 
 // Raw texts of the command line, validated by runOptionsFrom().
 struct RunArguments {
     OptionText tiles, tileQueue, chunkQueue, balance, size, position, nodes, out, save, display, tiling, localRendering,
-        gl, launch, stream, remoteMural, nodeProgram, captureVia, restartNodes, minNodes, spareNodes;
+        gl, launch, stream, hostFile, perHost, startTimeout, launchSecret, slurm, remoteMural, nodeProgram, captureVia,
+        restartNodes, minNodes, spareNodes;
     OptionText config, canvas, projection, modelUnit, delta, cacheSize;
     std::vector<std::string> layouts;
     bool allLocal = false, printConfig = false;
+    bool startsNodes = false; // a new session: without nodes in the options, those of the batch job
     OptionText stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
     OptionText localNodes, frames, latency, report, record, overlay;
     std::string verify; // empty: not given

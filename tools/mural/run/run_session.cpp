@@ -15,8 +15,8 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int64_t kReadyLocalMs = 60'000;
-constexpr int64_t kReadyRemoteMs = 120'000;
+// The head reports late nodes itself, after twice --start-timeout at most.
+constexpr int64_t kBeyondStartMs = 60'000;
 // A launcher may start the program and end. Its children have this time until their first context…
 constexpr int64_t kFirstContextMs = 30'000;
 // …and its remaining processes have this time after the last context has ended.
@@ -59,7 +59,7 @@ private:
 
     // Returns nullopt when programs may connect, otherwise the exit status.
     std::optional<int> awaitReady() {
-        const Deadline deadline = Deadline::inMs(run_.config.hosts.empty() ? kReadyLocalMs : kReadyRemoteMs);
+        const Deadline deadline = Deadline::inMs(2 * run_.config.startTimeoutMs + kBeyondStartMs);
         while (!ready_) {
             turn();
             if (failure_) return fail(*failure_);
@@ -235,6 +235,10 @@ private:
         case HeadEvent::Kind::FramesReached:
         case HeadEvent::Kind::StopRequested:
             endRequested_ = true;
+            program_.end(kEndGraceMs);
+            break;
+        case HeadEvent::Kind::JobOver:
+            wallLost_ = true;
             program_.end(kEndGraceMs);
             break;
         case HeadEvent::Kind::WallLost: endUncounted(); break;

@@ -1,17 +1,21 @@
-#include "nodes/head/membership/node_process.hpp"
+#include "nodes/launch/launchers/node_process.hpp"
 
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
-#include <poll.h>
 #include <unistd.h>
+#include <utility>
 
 #include "nodes/launch/environment.hpp"
-#include "common/ipc/file_descriptor.hpp"
+#include "nodes/launch/launchers/shell_words.hpp"
 
 namespace mural {
 namespace {
+
+constexpr int64_t kLastLinesMs = 500; // another process may hold the output open
+
+} // namespace
 
 Result<FileDescriptor> inputOf(const std::string& text) {
     if (text.empty()) {
@@ -29,11 +33,16 @@ Result<FileDescriptor> inputOf(const std::string& text) {
     return reader;
 }
 
-} // namespace
-
 Result<std::unique_ptr<NodeProcess>> NodeProcess::start(const NodeCommand& command) {
     auto input = inputOf(command.standardInput);
     if (!input) return input.error();
+    FileDescriptor ours, theirs;
+    if (command.takeLine) {
+        int ends[2];
+        if (pipe2(ends, O_CLOEXEC) != 0) return Error{std::string("pipe: ") + std::strerror(errno)};
+        ours = FileDescriptor(ends[0]);
+        theirs = FileDescriptor(ends[1]);
+    }
     launch::Environment environment = launch::Environment::current();
     launch::removeCapture(environment);
     launch::SpawnRequest request;
@@ -42,12 +51,29 @@ Result<std::unique_ptr<NodeProcess>> NodeProcess::start(const NodeCommand& comma
     request.environment = environment.entries();
     if (command.inheritFd >= 0) request.inheritedFds.push_back(command.inheritFd);
     request.inputFd = input->get();
-    request.outputFd = STDERR_FILENO; // standard output belongs to the program
+    request.outputFd = theirs.valid() ? theirs.get() : STDERR_FILENO; // standard output belongs to the program
+    request.errorFd = theirs.valid() ? theirs.get() : -1;
     request.ownSession = true;
     request.signalWhenWeDie = SIGKILL;
     auto started = launch::ChildProcess::start(request);
     if (!started) return started.error();
-    return std::unique_ptr<NodeProcess>(new NodeProcess(*started));
+    std::unique_ptr<NodeProcess> node(new NodeProcess(*started, command));
+    if (ours.valid()) node->capture(std::move(ours), command);
+    return node;
+}
+
+NodeProcess::NodeProcess(launch::ChildProcess process, const NodeCommand& command)
+    : pid_(process.pid()),
+      command_(launch::joined(command.arguments, " ")),
+      isHandedOver_(command.isHandedOver),
+      process_(process) {}
+
+void NodeProcess::capture(FileDescriptor output, const NodeCommand& command) {
+    output_ = std::make_unique<launch::OutputLines>(std::move(output),
+                                                    [this, take = command.takeLine](std::string_view line) {
+                                                        recent_.add(line);
+                                                        take(line);
+                                                    });
 }
 
 NodeProcess::~NodeProcess() { kill(); }
@@ -55,16 +81,14 @@ NodeProcess::~NodeProcess() { kill(); }
 std::optional<std::string> NodeProcess::ended() {
     const std::lock_guard lock(mutex_);
     if (process_.running()) return std::nullopt;
+    if (output_ && !std::exchange(isDrained_, true)) (void)output_->drain(Deadline::inMs(kLastLinesMs));
     return process_.describeEnd();
 }
 
-std::optional<std::string> NodeProcess::waitEnded(Deadline deadline) {
-    constexpr int kSliceMs = 5;
-    while (true) {
-        if (auto how = ended()) return how;
-        if (deadline.passed()) return std::nullopt;
-        poll(nullptr, 0, kSliceMs);
-    }
+std::string NodeProcess::details() const {
+    const std::string lines = recent_.text();
+    if (!output_) return "; see its messages";
+    return " of \"" + command_ + "\"" + (lines.empty() ? ", without a message" : ": " + lines);
 }
 
 void NodeProcess::kill() {

@@ -1,0 +1,92 @@
+#include "nodes/launch/launchers/pmix_launcher.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <poll.h>
+#include <sstream>
+#include <utility>
+
+#include "common/log/log.hpp"
+#include "nodes/launch/launchers/node_process.hpp"
+#include "nodes/launch/launchers/starter/starter_protocol.hpp"
+
+namespace mural {
+namespace {
+
+constexpr const char* kKey = "mural.nodes"; // the lines of starter_protocol.hpp
+constexpr int64_t kFenceMs = 20'000;
+constexpr int kPollMs = 50;
+
+volatile std::sig_atomic_t endRequested = 0;
+
+} // namespace
+
+std::string pmixHostOf(int rank) { return "rank" + std::to_string(rank); }
+
+PmixLauncher::PmixLauncher() = default;
+PmixLauncher::~PmixLauncher() = default;
+
+Result<void> PmixLauncher::publish(const std::vector<NodeTask>& tasks) {
+    auto client = launch::PmixClient::open();
+    if (!client) return client.error();
+    client_ = std::move(*client);
+    std::string lines;
+    for (const NodeTask& task : tasks) {
+        launch::StarterRequest request;
+        request.kind = launch::StarterRequest::Kind::Start;
+        request.id = task.node + 1;
+        request.host = task.host;
+        request.name = task.name;
+        request.endpoint = task.endpoint;
+        request.secret = task.secret;
+        lines += lineOf(request) + "\n";
+    }
+    if (auto put = client_->put(kKey, lines); !put) return put;
+    return client_->fence(Deadline::inMs(kFenceMs));
+}
+
+std::vector<std::unique_ptr<RunningNode>> PmixLauncher::start(const std::vector<NodeTask>& tasks) {
+    std::string why = "the processes of mpirun or srun start their nodes only once; --launch ssh and slurm can restart "
+                      "nodes";
+    if (!std::exchange(isStarted_, true)) {
+        const auto published = publish(tasks);
+        why = published ? "" : "PMIx: " + published.error().message;
+    }
+    // Their connections show the ends of started nodes.
+    std::vector<std::unique_ptr<RunningNode>> nodes(tasks.size());
+    for (auto& node : nodes)
+        if (!why.empty()) node = std::make_unique<AbsentNode>(why);
+    return nodes;
+}
+
+int runPmixRank(int rank, const NodeBinary& binary, int64_t timeoutMs) {
+    signal(SIGPIPE, SIG_IGN);
+    for (const int number : {SIGTERM, SIGINT, SIGHUP}) signal(number, [](int) { endRequested = 1; });
+    const auto failed = [&](const std::string& why) {
+        log::error(log::Topic::Launch, "rank ", rank, ": ", why);
+        return 1;
+    };
+    auto client = launch::PmixClient::open();
+    if (!client) return failed(client.error().message);
+    if (auto met = (*client)->fence(Deadline::inMs(timeoutMs)); !met) return failed(met.error().message);
+    const auto lines = (*client)->get(0, kKey);
+    if (!lines) return failed("rank 0 has published no nodes: " + lines.error().message);
+    std::vector<std::unique_ptr<NodeProcess>> nodes;
+    std::istringstream text(lines.value());
+    for (std::string line; std::getline(text, line);) {
+        const auto request = launch::starterRequestOf(line);
+        if (!request || request->host != pmixHostOf(rank)) continue;
+        NodeCommand command;
+        command.arguments = {binary.program, binary.nodeWord(), "--as", request->name, "--connect", request->endpoint};
+        command.standardInput = request->secret + "\n";
+        auto started = NodeProcess::start(command);
+        if (!started) return failed(started.error().message);
+        nodes.push_back(std::move(*started));
+    }
+    // Nodes end with the head. A failed node is reported by the head, and does not end the other ranks.
+    while (endRequested == 0 && std::ranges::any_of(nodes, [](const auto& node) { return !node->ended(); }))
+        poll(nullptr, 0, kPollMs);
+    return 0;
+}
+
+} // namespace mural

@@ -1,0 +1,17 @@
+// `mural run --slurm OPTIONS`: requests a Slurm job and runs in it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mural::cli {
+
+// Returns the salloc command that runs the same command line inside of a new job. arguments: of this process, without
+// its name. options: of salloc, separated by spaces. Pure.
+std::vector<std::string> sallocCommandOf(const std::string& mural, const std::vector<std::string>& arguments,
+                                         const std::string& options);
+
+// Becomes salloc, whose exit status is that of the run. Returns the exit status of a failure, which it has reported.
+int becomeSalloc(const std::vector<std::string>& command);
+
+} // namespace mural::cli
