@@ -26,14 +26,15 @@ def skip(why):
     sys.exit(SKIP)
 
 
-def enter(own_processes=False):
+def enter(own_processes=False, own_users=True):
     """Starts the script inside the namespaces. own_processes: its child processes end with it in every case; their
-    numbers then differ from the numbers in /proc."""
+    numbers then differ from the numbers in /proc. own_users=False: requires root, because servers that change their
+    user fail in a user namespace."""
     if os.environ.get(INSIDE):
         return
-    reasons = []
+    reasons = [] if own_users or os.getuid() == 0 else ["it needs root"]
     # In a chroot the kernel permits no user namespaces; root needs none.
-    for namespaces in ["-Urnm"] + (["-nm"] if os.getuid() == 0 else []):
+    for namespaces in (["-Urnm"] if own_users else []) + (["-nm"] if os.getuid() == 0 else []):
         command = ["unshare", namespaces, "--kill-child", "--fork"] + (["--pid"] if own_processes else [])
         try:
             allowed = subprocess.run(command + ["true"], capture_output=True, text=True, timeout=20, check=False)

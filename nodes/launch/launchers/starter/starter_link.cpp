@@ -146,6 +146,7 @@ StarterLink::Prepared StarterLink::prepare(const NodeTask& task, const std::stri
         if (const auto gone = gone_.find(task.host); gone != gone_.end()) {
             state->ended = gone->second;
             state->isHostGone = true;
+            state->lastLines = Deadline::inMs(0);
         }
     }
     return {std::make_unique<Node>(shared_from_this(), state, start.id), lineOf(start)};
@@ -197,13 +198,14 @@ void StarterLink::setGone(const std::string& host, const std::string& why) {
         if (state->host == host && !state->ended) {
             state->ended = why;
             state->isHostGone = true;
+            state->lastLines = Deadline::inMs(kLastLinesMs);
         }
 }
 
 std::optional<std::string> StarterLink::endOf(State& state) {
     {
         const std::lock_guard lock(mutex_);
-        if (state.ended) return state.ended;
+        if (state.ended && (!state.isHostGone || state.lastLines.passed())) return state.ended;
     }
     return ended();
 }

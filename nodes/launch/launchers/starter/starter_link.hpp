@@ -71,7 +71,8 @@ private:
         std::string host;
         pid_t pid = 0;
         std::optional<std::string> ended;
-        bool isHostGone = false; // it has ended with its starter
+        bool isHostGone = false;                // it has ended with its starter…
+        Deadline lastLines = Deadline::never(); // …whose last lines may arrive until then
         RecentLines lines;
     };
 
