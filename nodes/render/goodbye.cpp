@@ -1,7 +1,10 @@
 #include "nodes/render/goodbye.hpp"
 
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <sys/resource.h>
 
 #include "nodes/frame_transfer/picture_sender.hpp"
@@ -20,6 +23,15 @@ double processCpuSeconds() {
            1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }
 
+// Largest resident memory of this program. getrusage() would include the process before exec.
+int64_t peakMemoryBytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmHWM:")) return std::strtoll(line.c_str() + 6, nullptr, 10) * 1024;
+    }
+    return 0;
+}
+
 } // namespace
 
 nlohmann::json goodbyeOf(const GoodbyeParts& parts) {
@@ -31,6 +43,7 @@ nlohmann::json goodbyeOf(const GoodbyeParts& parts) {
     bye["lacking"] = counts.lacking;
     bye["frames"] = counts.frames;
     bye["cpuSeconds"] = processCpuSeconds();
+    bye["peakMemoryBytes"] = peakMemoryBytes();
     if (exchange) bye["exchangeBytes"] = exchange->bytesSent();
     if (sender && sender->packs()) {
         bye["pictureBytes"] = sender->packedBytes();

@@ -217,6 +217,9 @@ TEST(HeadSession, reportsWindowsThatEveryNodeDrawsWholeOnce) {
     ASSERT_TRUE(program.waitFramesDone(3));
     const auto report = head.finish();
     EXPECT_EQ(report["drawnWhole"], true);
+    ASSERT_EQ(report["limits"].size(), 1u);
+    EXPECT_EQ(report["limits"][0]["code"], "drawn-whole");
+    EXPECT_TRUE(report["sharedDraws"].is_null());
     int line = 0;
     for (const auto& event : head.seen)
         line += event["event"] == "say" &&

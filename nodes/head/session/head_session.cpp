@@ -490,6 +490,8 @@ SessionNumbers HeadSession::numbers() {
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = advice_.drawnWhole();
+    result.limits = advice_.limits();
+    result.sharedDraws = advice_.sharedDraws();
     result.recording = recording_.latest();
     const std::lock_guard lock(mutex_);
     result.nodes = totals_;

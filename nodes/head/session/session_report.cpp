@@ -23,6 +23,17 @@ Json swapJson(const SwapTotals& s) {
             {"p99Ns", s.p99Ns},     {"maxNs", s.maxNs}, {"clockErrorNs", s.clockErrorNs}};
 }
 
+Json limitsJson(const std::vector<DivisionLimit>& limits) {
+    Json list = Json::array();
+    for (const DivisionLimit& limit : limits) list.push_back({{"code", limit.code}, {"text", limit.text}});
+    return list;
+}
+
+Json sharedDrawsJson(const SharedDraws& draws) {
+    if (draws.frames == 0) return nullptr;
+    return {{"frames", draws.frames}, {"shared", draws.shared}};
+}
+
 double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<double>(kNsPerS); }
 
 } // namespace
@@ -32,6 +43,7 @@ void readGoodbye(const std::string& text, NodeTotals& totals) {
     if (!json.is_object()) return;
     totals.commands = wholeOf(json, "commands");
     totals.exchangeBytes = wholeOf(json, "exchangeBytes");
+    totals.peakMemoryBytes = wholeOf(json, "peakMemoryBytes");
     totals.pictureBytes = wholeOf(json, "pictureBytes");
     totals.pictureRawBytes = wholeOf(json, "pictureRawBytes");
     if (const auto swaps = json.find("swapBarrier"); swaps != json.end() && swaps->is_object())
@@ -142,6 +154,7 @@ Json reportOf(const SessionNumbers& n) {
         nodes.push_back({{"node", node.node},
                          {"frames", node.frames},
                          {"cpuSeconds", node.cpuSeconds},
+                         {"peakMemoryBytes", node.peakMemoryBytes},
                          {"replaySeconds", node.replaySeconds},
                          {"readbackSeconds", node.readbackSeconds},
                          {"commands", node.commands},
@@ -179,6 +192,8 @@ Json reportOf(const SessionNumbers& n) {
          std::accumulate(n.programs.uncomparedFrames.begin(), n.programs.uncomparedFrames.end(), uint64_t{0})},
         {"uncomparedFramesBy", uncomparedJson(n.programs)},
         {"drawnWhole", n.drawnWhole},
+        {"limits", limitsJson(n.limits)},
+        {"sharedDraws", sharedDrawsJson(n.sharedDraws)},
         {"callsUnsupported", n.programs.callsUnsupported},
         {"savedPictures", n.output.savedPictures},
         {"lastPicture", n.lastPicture},

@@ -13,6 +13,7 @@
 #include "nodes/head/broadcast/delta_stream.hpp"
 #include "nodes/head/balancing/equalizer_totals.hpp"
 #include "nodes/head/recording/recording_status.hpp"
+#include "nodes/head/session/slowdown_advice.hpp"
 
 namespace mural {
 
@@ -27,9 +28,10 @@ struct SwapTotals {
 struct NodeTotals {
     int node = 0;
     int64_t frames = 0;
-    double cpuSeconds = 0;      // of the whole process
-    double replaySeconds = 0;   // CPU time of its replay thread: drawing…
-    double readbackSeconds = 0; // …and reading the pictures
+    double cpuSeconds = 0;       // of the whole process
+    int64_t peakMemoryBytes = 0; // largest resident memory of the process
+    double replaySeconds = 0;    // CPU time of its replay thread: drawing…
+    double readbackSeconds = 0;  // …and reading the pictures
     int64_t commands = 0;
     int64_t exchangeBytes = 0;                     // picture bytes sent to other nodes
     int64_t pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
@@ -53,6 +55,8 @@ struct SessionNumbers {
     std::string lastPicture;                  // path
     std::optional<RecordingStatus> recording; // the latest one
     bool drawnWhole = false;                  // see SlowdownAdvice
+    std::vector<DivisionLimit> limits;
+    SharedDraws sharedDraws;
     std::vector<NodeTotals> nodes;
 };
 

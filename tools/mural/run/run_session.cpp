@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "common/base/pause_watch.hpp"
+#include "common/json/json_text.hpp"
 #include "nodes/launch/bypass_watch.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/launch/program_supervisor.hpp"
@@ -128,11 +130,21 @@ private:
     }
 
     void printReport() {
-        writeReport(run_, report_->json, console_);
+        const std::string why = report_->frames > 0 || !bypassLines_.empty() ? std::string() : whyNoFrame();
+        writeReport(run_, reportWithCapture(why), console_);
         for (const std::string& line : reportLines(*report_)) console_.say(line);
         reportUnsaved();
-        if (report_->frames > 0 || bypassReported_) return;
-        console_.error("no frame was captured: " + whyNoFrame());
+        if (!why.empty()) console_.error("no frame was captured: " + why);
+    }
+
+    // Returns the head's report with the findings about the capture, which the head does not know.
+    [[nodiscard]] std::string reportWithCapture(const std::string& whyNoFrame) {
+        nlohmann::json report = parseJson(report_->json);
+        if (!report.is_object()) return report_->json;
+        report["bypass"] = bypassLines_;
+        report["noFrame"] = whyNoFrame;
+        report["unsupportedCommands"] = bypass_.unsupportedCommands();
+        return jsonText(report);
     }
 
     void reportUnsaved() {
@@ -149,7 +161,10 @@ private:
         const bool failed = program_.exitStatus() != 0 && !program_.stopRequested();
         if (!run_.config.nodeProgram.empty() && !failed)
             return name + " did not use the native API; only such programs draw on the nodes of --node-program";
-        if (std::string bypass = bypass_.describeEnded(failed); !bypass.empty()) return bypass;
+        if (std::string bypass = bypass_.describeEnded(failed); !bypass.empty()) {
+            bypassLines_.push_back(bypass);
+            return bypass;
+        }
         if (failed)
             return name + " ended before it created a GL context (" + program_.describeEnd() +
                    "); its messages are above. Try it with mural run --native; mural doctor checks display and GL";
@@ -162,16 +177,16 @@ private:
     void watchBypass() {
         for (const std::string& line : bypass_.newLines()) {
             console_.error(line);
-            bypassReported_ = true;
+            bypassLines_.push_back(line);
         }
         reportUncaptured();
         if (!nextExamination_.passed()) return;
         nextExamination_ = Deadline::inMs(kExaminationMs);
-        if (everClients_ || bypassReported_) return;
+        if (everClients_ || !bypassLines_.empty()) return;
         const std::string line = bypass_.describeRunning(program_.processes());
         if (line.empty()) return;
         console_.error(line);
-        bypassReported_ = true;
+        bypassLines_.push_back(line);
     }
 
     // Reports processes that run without the capture library, such as children of a shell whose environment was
@@ -182,7 +197,7 @@ private:
         const std::string line = bypass_.describeUncaptured(program_.processes());
         if (line.empty()) return;
         console_.error(line);
-        bypassReported_ = true;
+        bypassLines_.push_back(line);
     }
 
     void turn() {
@@ -254,7 +269,7 @@ private:
     launch::BypassWatch& bypass_;
     Deadline nextExamination_ = Deadline::never();
     Deadline uncapturedAt_ = Deadline::never();
-    bool bypassReported_ = false;
+    std::vector<std::string> bypassLines_; // reported
     std::unique_ptr<HeadControl> head_;
     bool ready_ = false;
     bool finishing_ = false;
