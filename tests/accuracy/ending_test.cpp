@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "tests/temporary_folder.hpp"
-#include "tools/mural/accuracy/interruption.hpp"
-#include "tools/mural/accuracy/result_file.hpp"
+#include "tools/mural/child_runs/interruption.hpp"
+#include "tools/mural/child_runs/result_file.hpp"
 
 namespace mural::cli {
 namespace {

@@ -19,6 +19,7 @@
 #include "nodes/replay/engine/make_replay.hpp"
 #include "tools/mural/accuracy/accuracy_command.hpp"
 #include "nodes/session/stream_build.hpp"
+#include "tools/mural/app_report/app_report_command.hpp"
 #include "nodes/trace_player/player.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/change/change_command.hpp"
@@ -94,7 +95,8 @@ class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {
         if (app->get_parent() == nullptr) return "Usage: mural COMMAND [OPTIONS]\n";
-        const std::string rest = app->get_name() == "run"      ? " -- PROGRAM ARGUMENTS..."
+        const std::string rest = app->get_name() == "run" || app->get_name() == "app-report"
+                                     ? " -- PROGRAM ARGUMENTS..."
                                  : app->get_name() == "ctl"    ? " [SESSION] COMMAND..."
                                  : app->get_name() == "change" ? " [SESSION]"
                                  : app->get_name() == "bench"  ? " accuracy [-- PROGRAM ARGUMENTS...]"
@@ -352,6 +354,7 @@ private:
             "--no-avahi\n\nLists machines that run `mural node --wait`. Announcements are not authenticated; sessions "
             "check the secret.\nExit status: 0, 1 if no daemon was found, 2 for a bad argument.");
         mural::cli::describeDiscover(discover, discover_);
+        addAppReport();
         addBench();
         addConfig();
         addHelp();
@@ -371,6 +374,22 @@ private:
     int runCtl() {
         ctl_.words.insert(ctl_.words.end(), line_.program.begin(), line_.program.end());
         return mural::cli::ctlCommand(ctl_);
+    }
+
+    void addAppReport() {
+        appReport_ = &add(
+            "app-report", "report before a show what a program will do on a wall", [this] { return runAppReport(); },
+            mural::cli::kAppReportFooter);
+        appReport_->prefix_command();
+        mural::cli::describeAppReport(*appReport_, appReportArguments_);
+    }
+
+    int runAppReport() {
+        const auto rest = appReport_->remaining();
+        if (!rest.empty() && rest.front().starts_with("-"))
+            return usageError("mural app-report", "unknown option " + rest.front());
+        appReportArguments_.program = programOf(*appReport_, line_);
+        return mural::cli::appReportCommand(appReportArguments_);
     }
 
     void addBench() {
@@ -427,11 +446,15 @@ private:
 
     void addDoctor() {
         CLI::App& doctor = add(
-            "doctor", "check this machine, or the network, for Mural", [this] { return runDoctor(); },
+            "doctor", "check this machine, all machines of a wall, or the network, for Mural",
+            [this] { return runDoctor(); },
             "Examples:\n  mural doctor\n  mural doctor --json\n  mural doctor --network                      sockets "
             "and limits of this machine\n  mural doctor --network wall1,wall2          multicast, datagram size, rate "
-            "and losses to these hosts\n\nEach line is ok, warn or bad, with a remedy.\nExit status: 0 if Mural can be "
-            "used, 1 if a problem must be fixed, 2 for a bad argument.");
+            "and losses to these hosts\n  mural doctor --nodes wall1,wall2            all machines of a wall: "
+            "differences and faults\n  mural doctor --nodes wall1,wall2 --config wall.eqc\n\nEach line is ok, warn or "
+            "bad, with a remedy.\nExit status: 0 if Mural can be "
+            "used, 1 if a problem must be fixed, 2 for a bad argument. With --nodes: 0; 1 with warnings, 2 with "
+            "faults.");
         doctor.option_defaults()->take_last();
         doctor.add_flag("--json", asJson_, "print JSON");
         network_ = mural::cli::describeNetworkDoctor(doctor, networkArguments_);
@@ -447,6 +470,8 @@ private:
     SplitLine line_;
     CLI::App* run_ = nullptr;
     CLI::App* call_ = nullptr;
+    CLI::App* appReport_ = nullptr;
+    mural::cli::AppReportArguments appReportArguments_;
     mural::cli::CallArguments callArguments_;
     std::string starterProgram_; // with the native API; empty: mural
     mural::cli::WaitArguments wait_;

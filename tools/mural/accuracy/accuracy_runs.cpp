@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
-#include <poll.h>
 #include <sstream>
 #include <unistd.h>
 
@@ -17,7 +15,8 @@
 #include "nodes/launch/process_tree.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/output/files/png_files.hpp"
-#include "tools/mural/accuracy/interruption.hpp"
+#include "tools/mural/child_runs/end_processes.hpp"
+#include "tools/mural/child_runs/interruption.hpp"
 
 namespace mural::cli {
 
@@ -47,26 +46,6 @@ bool awaitEnd(launch::ChildProcess& child, Deadline limit) {
     return true;
 }
 
-// Kills processes left by a killed `mural run`, which would write into folders during their removal.
-void killOrphans(pid_t display) {
-    for (const Deadline deadline = Deadline::inMs(kEndMs); !deadline.passed(); poll(nullptr, 0, kTurnMs)) {
-        launch::reapAdopted({display});
-        const auto left = launch::descendantsOf(getpid(), {display});
-        if (left.empty()) return;
-        for (const launch::ProcessFacts& p : left) kill(p.pid, SIGKILL);
-    }
-}
-
-// `mural run` ends its processes at the first signal, and stops waiting for pictures at the second.
-void endWithAll(launch::ChildProcess& child, pid_t display) {
-    for (int time = 0; time < 2; ++time) {
-        child.signal(SIGTERM);
-        if (child.waitUntil(Deadline::inMs(kEndMs))) return;
-    }
-    child.end(Deadline::inMs(0));
-    killOrphans(display);
-}
-
 Result<OwnedPicture> readPpm(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::string magic;
@@ -90,25 +69,10 @@ Result<OwnedPicture> readPpm(const std::string& path) {
 
 } // namespace
 
-Result<ScratchFolder> ScratchFolder::make() {
-    std::error_code error;
-    const std::filesystem::path all = std::filesystem::temp_directory_path(error);
-    std::string path = (error ? std::filesystem::path("/tmp") : all) / "mural-accuracy.XXXXXX";
-    if (mkdtemp(path.data()) == nullptr)
-        return Error{"cannot create a folder for pictures: " + path + ": " + std::strerror(errno) +
-                     "; set TMPDIR to a writable folder"};
-    return ScratchFolder(path);
-}
-
-ScratchFolder::~ScratchFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-}
-
 Result<AccuracyRuns> AccuracyRuns::open() {
     auto scratch = ScratchFolder::make();
     if (!scratch) return scratch.error();
-    launch::adoptOrphans(); // for killOrphans()
+    launch::adoptOrphans(); // for endWithAll()
     auto display = launch::PrivateDisplay::start(launch::kDefaultScreenWidth, launch::kDefaultScreenHeight);
     if (!display) return display.error();
     return AccuracyRuns(std::move(*display), std::move(*scratch));
@@ -158,7 +122,7 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
     if (request.errorFd >= 0) close(request.errorFd);
     if (!child) return child.error();
     if (!awaitEnd(*child, Deadline::inMs(limitMs))) {
-        endWithAll(*child, display_->pid());
+        endWithAll(*child, display_->pid(), kEndMs);
         return Error{name + " did not end within " + std::to_string(limitMs / 1000) + " s and was stopped"};
     }
     if (child->exitStatus() == 0) return textOf(output);

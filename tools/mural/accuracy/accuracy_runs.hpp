@@ -3,31 +3,17 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/base/result.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/launch/private_display.hpp"
 #include "nodes/output/picture.hpp"
+#include "tools/mural/child_runs/scratch_folder.hpp"
 
 namespace mural::cli {
 
 using Words = std::vector<std::string>;
-
-// Temporary folder, removed with its contents.
-class ScratchFolder {
-public:
-    static Result<ScratchFolder> make();
-    ScratchFolder(ScratchFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-    ScratchFolder(const ScratchFolder&) = delete;
-    ~ScratchFolder();
-    [[nodiscard]] const std::string& path() const { return path_; }
-
-private:
-    explicit ScratchFolder(std::string path) : path_(std::move(path)) {}
-    std::string path_;
-};
 
 class AccuracyRuns {
 public:

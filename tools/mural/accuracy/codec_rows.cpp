@@ -4,7 +4,7 @@
 #include "common/base/clock.hpp"
 #include "compositor/codecs/registry.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
-#include "tools/mural/accuracy/interruption.hpp"
+#include "tools/mural/child_runs/interruption.hpp"
 
 namespace mural::cli {
 

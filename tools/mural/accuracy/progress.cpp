@@ -1,7 +1,7 @@
 #include "tools/mural/accuracy/progress.hpp"
 
 #include "common/log/log.hpp"
-#include "tools/mural/accuracy/interruption.hpp"
+#include "tools/mural/child_runs/interruption.hpp"
 
 namespace mural::cli {
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tools/mural/accuracy/interruption.hpp"
+#include "tools/mural/child_runs/interruption.hpp"
 #include "tools/mural/accuracy/progress.hpp"
 
 namespace mural::cli {

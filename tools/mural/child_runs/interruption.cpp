@@ -1,4 +1,4 @@
-#include "tools/mural/accuracy/interruption.hpp"
+#include "tools/mural/child_runs/interruption.hpp"
 
 namespace mural::cli {
 

@@ -1,4 +1,4 @@
-#include "tools/mural/accuracy/result_file.hpp"
+#include "tools/mural/child_runs/result_file.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -1,5 +1,5 @@
-// Handles Ctrl-C and other termination signals of `mural bench accuracy`. Waiting code polls for them, so the owners of
-// processes and folders clean up.
+// Handles Ctrl-C and other termination signals of commands that run programs. Waiting code polls for them, so the
+// owners of processes and folders clean up.
 #pragma once
 
 #include <array>
