@@ -19,6 +19,8 @@ template <class Function> void loadExtension(const EglFunctions& egl, Function& 
     function = reinterpret_cast<Function>(egl.getProcAddress(name));
 }
 
+} // namespace
+
 Result<EglFunctions> loadEgl() {
     auto library = DynamicLibrary::open({"libEGL.so.1", "libEGL.so"}, "libegl1");
     if (!library) return library.error();
@@ -47,6 +49,8 @@ Result<EglFunctions> loadEgl() {
     }
     return egl;
 }
+
+namespace {
 
 bool isSoftware(const EglFunctions& egl, EGLDeviceEXT device) {
     const char* extensions = egl.queryDeviceString ? egl.queryDeviceString(device, EGL_EXTENSIONS) : nullptr;

@@ -41,6 +41,9 @@ struct EglFunctions {
     PFNEGLQUERYDISPLAYATTRIBEXTPROC queryDisplayAttrib = nullptr;
 };
 
+// Loads libEGL. Errors: it is missing, or lacks functions of EGL 1.4 or EGL_EXT_platform_base.
+Result<EglFunctions> loadEgl();
+
 // Keeps unused surfaces and contexts until others are current. NVIDIA's driver (580.159) accesses the previous surfaces
 // and contexts in the next eglMakeCurrent. After their release and destruction, their memory held another object's
 // data, and half of all starting nodes crashed. For the same reason Mural releases nothing on that driver before others

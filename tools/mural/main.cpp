@@ -30,6 +30,7 @@
 #include "tools/mural/help/help_command.hpp"
 #include "tools/mural/trace/dump_command.hpp"
 #include "tools/mural/netperf/netperf.hpp"
+#include "tools/mural/hosts/hosts_doctor.hpp"
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
 #include "tools/mural/simulate/simulate_command.hpp"
@@ -458,9 +459,16 @@ private:
         doctor.option_defaults()->take_last();
         doctor.add_flag("--json", asJson_, "print JSON");
         network_ = mural::cli::describeNetworkDoctor(doctor, networkArguments_);
+        nodes_ = mural::cli::describeHostsDoctor(doctor, hostsArguments_);
+        network_->excludes(nodes_);
+        doctor_ = &doctor;
     }
 
     int runDoctor() {
+        for (const char* option : {"--launch", "--remote-mural", "--group", "--interface"})
+            if (network_->count() + nodes_->count() == 0 && doctor_->count(option) > 0)
+                return usageError("mural doctor", std::string(option) + " requires --network or --nodes");
+        if (nodes_->count() > 0) return mural::cli::hostsDoctorCommand(hostsArguments_, networkArguments_, asJson_);
         return network_->count() > 0 ? mural::cli::networkDoctorCommand(networkArguments_, asJson_)
                                      : mural::cli::doctorCommand(asJson_);
     }
@@ -495,7 +503,10 @@ private:
     mural::cli::NetperfArguments netperf_;
     mural::cli::HelpArguments help_;
     mural::cli::NetworkArguments networkArguments_;
+    mural::cli::HostsArguments hostsArguments_;
+    CLI::App* doctor_ = nullptr;
     CLI::Option* network_ = nullptr;
+    CLI::Option* nodes_ = nullptr;
     std::function<int()> action_;
 };
 

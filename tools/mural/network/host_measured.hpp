@@ -25,6 +25,7 @@ struct HostMeasured {
     std::string interfaceTowards;           // interface of this machine; empty: unknown
     MachineFacts facts;
     std::array<PathMeasured, std::size(kProbePaths)> paths;
+    bool hasStream = true;     // false: no stream is tried
     std::string streamFailure; // empty: the stream was measured
     bool multicast = false;    // the stream used multicast, not the member's connection
     uint64_t datagrams = 0;

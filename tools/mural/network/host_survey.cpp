@@ -62,6 +62,12 @@ Result<void> HostSurvey::greet(Deadline deadline) {
 }
 
 Result<void> HostSurvey::measure() {
+    if (auto r = probe(); !r) return r;
+    if (auto r = stream(); !r) m_.streamFailure = r.error().message;
+    return probeAgain();
+}
+
+Result<void> HostSurvey::probe() {
     std::vector<size_t> sizes{kMinProbeBytes};
     if (auto r = probeThere(sizes, {std::begin(kProbePaths), std::end(kProbePaths)}); !r) return r;
     if (auto r = probeBack(); !r) return r;
@@ -72,8 +78,7 @@ Result<void> HostSurvey::measure() {
     for (const ProbePath path : kProbePaths) {
         if (m_.path(path).trouble.empty()) m_.path(path).trouble = sockets_.trouble(path);
     }
-    if (auto r = stream(); !r) m_.streamFailure = r.error().message;
-    return probeAgain();
+    return {};
 }
 
 // Records arrivals in m_, and the largest size of the first method in seenBytes_.

@@ -23,6 +23,8 @@ public:
     // Reads the first reply, sent after start-up.
     Result<void> greet(Deadline deadline);
     Result<void> measure();
+    // Measures all but the stream.
+    Result<void> probe();
     // Checks again that multicast arrives.
     Result<void> probeAgain();
 

@@ -76,20 +76,18 @@ CLI::Option* describeNetworkDoctor(CLI::App& doctor, NetworkArguments& a) {
     network->type_name("[H1,H2]")->expected(0, 1);
     doctor
         .add_option("--launch", a.launchCommand,
-                    "with --network: command that runs a command on a host (ssh -o BatchMode=yes)")
-        ->type_name("CMD")
-        ->needs(network);
-    doctor.add_option("--remote-mural", a.remoteMural, "with --network: path of mural on the hosts (the local path)")
-        ->type_name("PATH")
-        ->needs(network);
-    doctor.add_option("--group", a.group, "with --network: multicast address and port (239.255.77.85:4277)")
-        ->type_name("ADDRESS:PORT")
-        ->needs(network);
+                    "with --network or --nodes: command that runs a command on a host (ssh -o BatchMode=yes)")
+        ->type_name("CMD");
+    doctor
+        .add_option("--remote-mural", a.remoteMural,
+                    "with --network or --nodes: path of mural on the hosts (the local path)")
+        ->type_name("PATH");
+    doctor.add_option("--group", a.group, "with --network or --nodes: multicast address and port (239.255.77.85:4277)")
+        ->type_name("ADDRESS:PORT");
     doctor
         .add_option("--interface", a.interface,
-                    "with --network: interface to send on, name or address (the one towards the first host)")
-        ->type_name("NAME")
-        ->needs(network);
+                    "with --network or --nodes: interface to send on, name or address (the one towards the first host)")
+        ->type_name("NAME");
     doctor
         .add_option("--rate", a.rate, "with --network: maximum rate, such as 900mbit (nine tenths of the card's rate)")
         ->type_name("RATE")

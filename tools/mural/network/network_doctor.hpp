@@ -10,7 +10,8 @@ class Option;
 
 namespace mural::cli {
 
-// Adds the options to doctor and returns --network, which the others require. `arguments` must outlive the parsing.
+// Adds the options to doctor and returns --network. Some options require it; --launch, --remote-mural, --group and
+// --interface require it or --nodes. `arguments` must outlive the parsing.
 CLI::Option* describeNetworkDoctor(CLI::App& doctor, NetworkArguments& arguments);
 int networkDoctorCommand(const NetworkArguments& arguments, bool asJson);
 

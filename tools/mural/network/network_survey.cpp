@@ -3,62 +3,22 @@
 #include <algorithm>
 #include <cstring>
 #include <netinet/in.h>
-#include <sstream>
 
 #include "nodes/launch/environment.hpp"
 #include "nodes/session/session_secret.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/network/host_survey.hpp"
+#include "tools/mural/network/probe_command.hpp"
 #include "transport/rsp/group_text.hpp"
-#include "transport/tcp/tcp_address.hpp"
 
 namespace mural::cli {
 
 namespace {
 
 constexpr int64_t kStartMs = 30'000; // for all members together, as for a session's nodes
-constexpr int64_t kResolveMs = 5'000;
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
 constexpr size_t kMaxDatagramBytes = 8972; // as RSP
-
-std::vector<std::string> split(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    std::istringstream stream(text);
-    for (std::string part; std::getline(stream, part, separator);)
-        if (!part.empty()) parts.push_back(part);
-    return parts;
-}
-
-// Quotes a word for the shell that the launch command runs on the host.
-std::string quoted(const std::string& word) {
-    if (word.find_first_of(" \t\"'\\$`*?[]()<>|&;!#~") == std::string::npos) return word;
-    std::string result = "'";
-    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return result + "'";
-}
-
-std::vector<std::string> memberCommand(const NetworkArguments& a, const std::string& host) {
-    if (a.hosts.empty()) return {launch::ownBinary(), "network-member"};
-    std::vector<std::string> command = split(a.launchCommand, ' ');
-    for (const std::string& word :
-         {host, quoted(a.remoteMural.empty() ? launch::ownBinary() : a.remoteMural), std::string("network-member")})
-        command.push_back(word);
-    return command;
-}
-
-// Returns the source address that the kernel would use towards a host; empty for an unknown name or another family.
-std::string ownAddressTowards(const std::string& host, int family) {
-    auto addresses = resolveTcp(host.substr(host.find('@') + 1), 9, TcpRole::Connect, Deadline::inMs(kResolveMs));
-    if (!addresses) return {};
-    for (const TcpAddress& a : *addresses) {
-        if (a.family() != family) continue;
-        // Connecting a datagram socket sends nothing but selects the route.
-        const FileDescriptor fd(::socket(a.family(), SOCK_DGRAM | SOCK_CLOEXEC, 0));
-        if (::connect(fd.get(), a.get(), a.sizeBytes) == 0) return numericText(localTcpAddress(fd.get()));
-    }
-    return {};
-}
 
 struct Started {
     std::unique_ptr<ProbeProcess> process;
@@ -72,7 +32,7 @@ public:
     Result<Survey> run(const std::function<void(const std::string&)>& progress) {
         if (auto r = open(); !r) return r.error();
         const std::vector<std::string> hosts =
-            a_.hosts.empty() ? std::vector<std::string>{"this machine"} : split(a_.hosts, ',');
+            a_.hosts.empty() ? std::vector<std::string>{"this machine"} : splitWords(a_.hosts, ',');
         // Surveys hold pointers to these elements.
         survey_.hosts.resize(hosts.size());
         for (size_t i = 0; i < hosts.size(); ++i) survey_.hosts[i].host = hosts[i];
@@ -105,7 +65,7 @@ private:
         std::memcpy(&number_, number.value().data(), sizeof number_);
         // Default: the interface that leads to the first host.
         std::string wanted = a_.interface;
-        if (wanted.empty() && !a_.hosts.empty()) wanted = ownAddressTowards(split(a_.hosts, ',').front(), family_);
+        if (wanted.empty() && !a_.hosts.empty()) wanted = ownAddressTowards(splitWords(a_.hosts, ',').front(), family_);
         auto interface = rsp::findInterface(wanted, group->family());
         if (!interface && a_.interface.empty()) interface = rsp::findInterface("", group->family());
         if (!interface) return interface.error();
@@ -130,27 +90,10 @@ private:
         return {};
     }
 
-    // Returns this machine's addresses of the group's family. The address towards the host is first, because members
-    // answer datagrams to the address that they connect to.
-    [[nodiscard]] std::vector<std::string> addressesFor(const std::string& towards) const {
-        std::vector<std::string> texts;
-        if (!towards.empty()) texts.push_back(towards);
-        auto all = rsp::networkInterfaces();
-        if (!all) return texts;
-        for (const rsp::NetworkInterface& i : *all) {
-            if (i.loopback && !a_.hosts.empty()) continue;
-            for (const SocketAddress& address : i.addresses) {
-                const std::string text = numericText(address);
-                if (address.family() != family_) continue;
-                if (text.find('%') == std::string::npos && std::ranges::find(texts, text) == texts.end())
-                    texts.push_back(text);
-            }
-        }
-        return texts;
-    }
-
     Started start(HostMeasured& h) {
-        auto process = ProbeProcess::start(memberCommand(a_, h.host));
+        auto process =
+            ProbeProcess::start(a_.hosts.empty() ? std::vector<std::string>{launch::ownBinary(), "network-member"}
+                                                 : probeCommand(a_.launchCommand, a_.remoteMural, h.host));
         if (!process) {
             h.failure = process.error().message;
             return {};
@@ -161,7 +104,7 @@ private:
         if (auto path = rsp::findInterface(towards, family_); path && !towards.empty()) h.interfaceTowards = path->name;
         auto port = splitHostPort(listening_->controlAddress());
         const nlohmann::json order{{"secret", toHex(secret_)},
-                                   {"addresses", addressesFor(towards)},
+                                   {"addresses", ownAddresses(towards, family_, a_.hosts.empty())},
                                    {"port", port ? port->port : 0},
                                    {"group", a_.group},
                                    {"interface", a_.hosts.empty() ? interface_.name : ""},

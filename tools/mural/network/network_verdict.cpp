@@ -86,7 +86,7 @@ Check multicast(const HereMeasured& here, const HostMeasured& h, const std::stri
         return {Health::Warn, name, "multicast arrives at the host, but multicast from the host does not arrive here",
                 fmt::format("allow UDP to {} in the firewalls of both machines; enable the switch's IGMP querier",
                             here.group)};
-    if (h.streamFailure.empty() && !h.multicast)
+    if (h.hasStream && h.streamFailure.empty() && !h.multicast)
         return {Health::Bad, name, "single datagrams arrive, but the group's probes did not arrive in time",
                 "see loss and datagram size, and repeat the test"};
     return {Health::Ok, name, "arrives in both directions", {}};
@@ -182,7 +182,7 @@ std::vector<Check> judgeHost(const HereMeasured& here, const HostMeasured& h) {
         checks.push_back(multicast(here, h, about("multicast")));
         checks.push_back(datagramSize(here, h, about("datagram size")));
     }
-    checks.push_back(stream(h, about("stream")));
+    if (h.hasStream) checks.push_back(stream(h, about("stream")));
     return checks;
 }
 

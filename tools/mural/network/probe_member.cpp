@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
+#include <ctime>
 #include <sys/socket.h>
 #include <thread>
 
@@ -12,7 +14,9 @@
 #include "nodes/session/session_secret.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/network/line_channel.hpp"
+#include "tools/mural/hosts/host_facts.hpp"
 #include "tools/mural/network/machine_facts.hpp"
+#include "tools/mural/network/probe_rate.hpp"
 #include "tools/mural/network/probe_sockets.hpp"
 #include "transport/rsp/group.hpp"
 #include "transport/tcp/socket_wait.hpp"
@@ -56,6 +60,14 @@ Route findRoute(const std::vector<std::string>& addresses, uint16_t port) {
         route.why += fmt::format("{}{}: {}", route.why.empty() ? "" : ", ", host, errnoText(code));
     }
     return route;
+}
+
+// The time of day. Tests plant a wrong clock by a variable.
+int64_t wallClockNs() {
+    timespec t{};
+    clock_gettime(CLOCK_REALTIME, &t);
+    const char* wrong = std::getenv("MURAL_TEST_CLOCK_OFFSET_MS");
+    return static_cast<int64_t>(t.tv_sec) * kNsPerS + t.tv_nsec + (wrong ? std::atoll(wrong) * kNsPerMs : 0);
 }
 
 // A member of the doctor's group that reads and discards the stream.
@@ -165,6 +177,14 @@ private:
             reading_.reset();
             return report;
         }
+        if (what == "clock") return {{"ns", wallClockNs()}};
+        if (what == "inspect") return inspect(order);
+        if (what == "listen") return listen(order);
+        if (what == "rate") {
+            const RateMeasured rate = rateListener_ ? rateListener_->finish() : RateMeasured{0, "no listener"};
+            rateListener_.reset();
+            return {{"bytesPerS", rate.bytesPerS}, {"problem", rate.problem}};
+        }
         return {{"failed", "unknown command \"" + what + "\"; check that both machines run the same version"}};
     }
 
@@ -200,6 +220,22 @@ private:
         return {{"joined", true}, {"why", ""}};
     }
 
+    static json inspect(const json& order) {
+        InspectionPlan plan;
+        plan.displays = order.at("displays").get<std::vector<std::string>>();
+        plan.folder = order.at("folder").get<std::string>();
+        return {{"host", toJson(inspectThisHost(plan))}};
+    }
+
+    json listen(const json& order) {
+        rateListener_.reset();
+        auto listener = RateListener::start(order.at("family").get<int>(), order.at("token").get<std::string>(),
+                                            order.at("ms").get<int64_t>());
+        if (!listener) return {{"port", 0}, {"problem", listener.error().message}};
+        rateListener_ = std::move(*listener);
+        return {{"port", rateListener_->port()}, {"problem", ""}};
+    }
+
     [[nodiscard]] json troubles() const {
         json list = json::array();
         for (const ProbePath path : kProbePaths) list.push_back(sockets_->trouble(path));
@@ -210,6 +246,7 @@ private:
     std::optional<ProbeSockets> sockets_;
     rsp::GroupOptions options_;
     std::optional<Reading> reading_;
+    std::unique_ptr<RateListener> rateListener_;
 };
 
 } // namespace

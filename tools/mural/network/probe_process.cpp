@@ -1,7 +1,9 @@
 #include "tools/mural/network/probe_process.hpp"
 
+#include <cctype>
 #include <csignal>
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "common/json/json_text.hpp"
@@ -32,11 +34,14 @@ Result<std::unique_ptr<ProbeProcess>> ProbeProcess::start(const std::vector<std:
     request.environment = environment.entries();
     request.inputFd = itsInput.get();
     request.outputFd = itsOutput.get();
+    FileDescriptor errors(memfd_create("mural-probe-errors", MFD_CLOEXEC));
+    request.errorFd = errors.get();
     request.ownSession = true;
     request.signalWhenWeDie = SIGKILL;
     auto process = launch::ChildProcess::start(request);
     if (!process) return process.error();
-    return std::unique_ptr<ProbeProcess>(new ProbeProcess(*process, LineChannel(std::move(output), std::move(ownEnd))));
+    return std::unique_ptr<ProbeProcess>(
+        new ProbeProcess(*process, LineChannel(std::move(output), std::move(ownEnd)), std::move(errors)));
 }
 
 ProbeProcess::~ProbeProcess() {
@@ -44,6 +49,17 @@ ProbeProcess::~ProbeProcess() {
     if (process_.waitUntil(Deadline::inMs(kEndMs))) return;
     process_.signalGroup(SIGKILL);
     process_.end(Deadline::inMs(0));
+}
+
+std::string ProbeProcess::describeEnd() const {
+    char text[4096];
+    const off_t size = lseek(errors_.get(), 0, SEEK_END);
+    const off_t from = size > static_cast<off_t>(sizeof text) ? size - static_cast<off_t>(sizeof text) : 0;
+    const ssize_t n = pread(errors_.get(), text, sizeof text, from);
+    std::string words(text, n > 0 ? static_cast<size_t>(n) : 0);
+    while (!words.empty() && std::isspace(static_cast<unsigned char>(words.back())) != 0) words.pop_back();
+    words.erase(0, words.find_last_of("\r\n") + 1);
+    return process_.describeEnd() + (words.empty() ? "" : ", " + words);
 }
 
 Result<void> ProbeProcess::send(const nlohmann::json& words) {
@@ -54,7 +70,7 @@ Result<nlohmann::json> ProbeProcess::receive(Deadline deadline) {
     auto line = lines_.read(deadline);
     if (!line) {
         const bool ended = process_.waitUntil(Deadline::inMs(200));
-        return Error{ended ? "the test process ended: " + process_.describeEnd() : line.error().message};
+        return Error{ended ? "the test process ended: " + describeEnd() : line.error().message};
     }
     auto answer = parseJson(*line);
     if (!answer.is_object())

@@ -1,6 +1,7 @@
 // The doctor's side of `mural network-member` on a host: started by the launch command, controlled by lines.
 #pragma once
 
+#include <csignal>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,12 +25,18 @@ public:
     // Returns a JSON object. Errors: the process has ended, is silent, reports an error, or sends no JSON.
     Result<nlohmann::json> receive(Deadline deadline);
     Result<nlohmann::json> query(const nlohmann::json& words, Deadline deadline);
+    // Kills it with its local descendants, so that receive() returns. Any thread.
+    void abandon() { process_.signalGroup(SIGKILL); }
 
 private:
-    ProbeProcess(launch::ChildProcess process, LineChannel lines)
-        : process_(std::move(process)), lines_(std::move(lines)) {}
+    ProbeProcess(launch::ChildProcess process, LineChannel lines, FileDescriptor errors)
+        : process_(std::move(process)), lines_(std::move(lines)), errors_(std::move(errors)) {}
+    // Returns how it ended, with the last line that it or its launch command printed to standard error.
+    [[nodiscard]] std::string describeEnd() const;
+
     launch::ChildProcess process_;
     LineChannel lines_;
+    FileDescriptor errors_; // memory with its standard error
 };
 
 } // namespace mural::cli
