@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 12;
+constexpr uint32_t kVersion = 13;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -52,7 +52,7 @@ struct Publication {
     uint32_t chunk;
     uint32_t beginBytes;
     uint32_t endBytes;
-    uint16_t stream;      // one per app thread
+    uint16_t stream;      // one per app thread; with the native API, the receivers (object_records.hpp)
     uint16_t lastOfChunk; // 1: the chunk is free once this range has been read
 };
 static_assert(sizeof(Publication) == 16);
@@ -251,6 +251,9 @@ struct Welcome {
     uint32_t refused;       // not 0: the head rejects the program; a text of extensionBytes follows instead
     uint32_t extensionBytes;
     uint32_t width, height; // of the wall in pixels; 0: the program's window determines it
+    uint32_t multicasts;    // 1: packets to all nodes travel by multicast to at least two of them
+    uint32_t isOneMachine;  // 1: all nodes are processes of this machine
+    uint32_t members;       // nodes whose membership the first replies report (native API)
 };
 
 } // namespace mural::capture

@@ -57,7 +57,9 @@ Frustum RenderTask::cullFrustum() const { return frustumOf(state_.view, state_.p
 void RenderTask::apply() const { state_.apply(); }
 unsigned RenderTask::framebuffer() const { return state_.target.framebuffer(); }
 bool RenderTask::sameAsBefore() const { return state_.sameAsBefore; }
-ObjectReader& RenderTask::objects() const { return state_.objects; }
+ObjectReader& RenderTask::objects() const { return state_.objects.reader(); }
+std::shared_ptr<AnyQueueReader> RenderTask::queueAny(std::string_view name) const { return state_.objects.queue(name); }
+Barrier RenderTask::barrier(std::string_view name) const { return state_.objects.barrier(name); }
 
 const void* RenderTask::keep(std::shared_ptr<const void> snapshot) const {
     state_.snapshots.push_back(std::move(snapshot));

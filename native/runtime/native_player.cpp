@@ -98,7 +98,7 @@ void NativePlayer::preview(uint32_t stream, std::span<const std::byte> payload) 
     ++previewed_;
     wire::RecordWalk walk(payload);
     wire::RecordView r;
-    while (walk.next(r)) takeObjects(clientOf(wire::clientOf(stream)), r.opcode, r.arguments);
+    while (walk.next(r)) takeObjects(stream, r.opcode, r.arguments);
 }
 
 bool NativePlayer::packet(uint32_t stream, std::span<const std::byte> payload) {
@@ -109,10 +109,10 @@ bool NativePlayer::packet(uint32_t stream, std::span<const std::byte> payload) {
     wire::RecordWalk walk(own);
     wire::RecordView r;
     while (walk.next(r)) {
+        if (!isPreviewed) takeObjects(stream, r.opcode, r.arguments);
+        if (wire::threadOf(stream) != wire::kToAllNodes) continue; // objects only; not counted, as nodes differ in them
         ++counts_.commands;
-        Client& client = clientOf(wire::clientOf(stream));
-        if (!isPreviewed) takeObjects(client, r.opcode, r.arguments);
-        if (!record(client, wire::clientOf(stream), r.opcode, r.arguments)) {
+        if (!record(clientOf(wire::clientOf(stream)), wire::clientOf(stream), r.opcode, r.arguments)) {
             ++counts_.malformed;
             return false;
         }
@@ -132,13 +132,16 @@ NativePlayer::Client& NativePlayer::clientOf(uint32_t id) {
             isEnding_ = isEnding_ || out_.readAhead(deadline) == ReadAhead::Ended;
             return !isEnding_;
         };
-    auto made = std::make_unique<Client>(static_cast<uint32_t>(config_.node), std::move(send), std::move(await));
+    const bool mapsBlobs = config_.isOnHeadsMachine && config_.plant != "places";
+    auto made = std::make_unique<Client>(std::move(send), await, mapsBlobs);
     return *clients_.emplace(id, std::move(made)).first->second;
 }
 
-void NativePlayer::takeObjects(Client& client, uint16_t opcode, std::span<const std::byte> arguments) {
+void NativePlayer::takeObjects(uint32_t stream, uint16_t opcode, std::span<const std::byte> arguments) {
+    Client& client = clientOf(wire::clientOf(stream));
     if (opcode == wire::kOpObject) {
-        if (const auto taken = client.objects.input(arguments); !taken) reportOnce(taken.error().message);
+        if (const auto taken = client.objects.input(wire::threadOf(stream), arguments); !taken)
+            reportOnce(taken.error().message);
     } else if (opcode == wire::kOpFrame && arguments.size() >= sizeof(wire::NativeFrame)) {
         wire::NativeFrame frame{};
         std::memcpy(&frame, arguments.data(), sizeof frame);
@@ -226,11 +229,12 @@ void NativePlayer::drawFrame(Client& client, uint32_t clientId, const FramePart&
     view.eyeBase = config_.eyeBase;
     view.wallDistance = config_.focusDistance;
     view.head = headOf(client.frame);
+    client.objects.beginDrawing(client.frame.number);
     const Frame info{client.frame.number, client.frame.seconds, client.frame.seed};
     const bool isSame = lastPart_ && isEqualPart(*lastPart_, part);
     Composition composition;
     runTask("Renderer::composition", [&] { composition = renderer_->composition(); });
-    TaskState state(part, view, info, isSame, composition, *target_, client.objects.reader(),
+    TaskState state(part, view, info, isSame, composition, *target_, client.objects,
                     [this](const std::string& text) { reportOnce(text); });
     RenderTask task(state);
     runTask("Renderer::frameStart", [&] { renderer_->frameStart(pipe_, info); });

@@ -43,8 +43,8 @@ public:
 
 private:
     struct Client {
-        Client(uint32_t node, ClientObjects::Send send, ClientObjects::Await await)
-            : objects(node, std::move(send), std::move(await)) {}
+        Client(ClientObjects::Send send, const ClientObjects::Await& await, bool mapsBlobs)
+            : objects(std::move(send), await, mapsBlobs) {}
         ClientObjects objects;
         std::map<uint32_t, wire::WindowConfig> windows;
         wire::NativeFrame frame{};
@@ -58,7 +58,7 @@ private:
           ranges_(config.ranges) {}
 
     Client& clientOf(uint32_t id);
-    void takeObjects(Client& client, uint16_t opcode, std::span<const std::byte> arguments);
+    void takeObjects(uint32_t stream, uint16_t opcode, std::span<const std::byte> arguments);
     bool record(Client& client, uint32_t clientId, uint16_t opcode, std::span<const std::byte> arguments);
     void onSwap(uint32_t clientId, Client& client, uint32_t window, uint32_t frame);
     void drawFrame(Client& client, uint32_t clientId, const FramePart& part, const wire::WindowConfig& window,

@@ -9,6 +9,7 @@
 
 #include <mural/render.hpp>
 
+#include "native/runtime/client_objects.hpp"
 #include "native/runtime/frame_part.hpp"
 #include "native/runtime/gl_target.hpp"
 #include "native/runtime/view.hpp"
@@ -18,7 +19,7 @@ namespace mural::native {
 class TaskState {
 public:
     TaskState(const FramePart& framePart, const ViewInput& viewInput, const Frame& frameInfo, bool isSameAsBefore,
-              const Composition& how, GlTarget& glTarget, ObjectReader& objectReader,
+              const Composition& how, GlTarget& glTarget, ClientObjects& clientObjects,
               std::function<void(const std::string&)> reporter)
         : part(framePart),
           view(viewInput),
@@ -26,7 +27,7 @@ public:
           sameAsBefore(isSameAsBefore),
           composition(how),
           target(glTarget),
-          objects(objectReader),
+          objects(clientObjects),
           report(std::move(reporter)) {}
 
     // Selects the framebuffer for this part.
@@ -38,7 +39,7 @@ public:
     const bool sameAsBefore;
     const Composition composition;
     GlTarget& target;
-    ObjectReader& objects;
+    ClientObjects& objects;
     const std::function<void(const std::string& text)> report;
     std::vector<std::shared_ptr<const void>> snapshots; // that the tasks of this frame use
     std::function<void()> beforeApply;                  // called once by apply(), before it; may be empty

@@ -1,5 +1,6 @@
 #include "native/session/app_link.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -10,66 +11,128 @@ namespace mural::native {
 
 namespace {
 
-constexpr uint32_t kWindow = 1;         // id of the only window
-constexpr int64_t kSliceNs = 2'000'000; // between checks for requests and for the end of the head
+constexpr uint32_t kWindow = 1;              // id of the only window
+constexpr int64_t kSliceNs = 2'000'000;      // between checks for the end of the head
+constexpr int64_t kIdleSliceNs = 50'000'000; // of the link's thread while no node sends
+constexpr int kBusySlices = 10;              // of kSliceNs, after a message of a node
 
 } // namespace
 
-Result<std::unique_ptr<AppLink>> AppLink::connect(const std::string& session, TakeRequest takeRequest,
-                                                  Deadline deadline) {
+Result<std::unique_ptr<AppLink>> AppLink::connect(const std::string& session, Deadline deadline) {
     auto link = CaptureLink::connect(session, capture::ProgramKind::Native, deadline);
     if (!link) return link.error();
-    (*link)->onReply(
-        [take = std::move(takeRequest)](const wire::ReplyHeader& header, std::span<const std::byte> bytes) {
-            if (header.kind == static_cast<uint32_t>(wire::ReplyKind::Object)) take(header.requestId, bytes);
-        });
     return std::unique_ptr<AppLink>(new AppLink(std::move(*link)));
 }
 
-AppLink::AppLink(std::unique_ptr<CaptureLink> link)
-    : link_(std::move(link)), writer_([this](std::span<const std::byte> packet) { return send(packet); }) {}
+void AppLink::start(NodeReports reports) {
+    take_ = std::move(reports);
+    link_->onReply([this](const wire::ReplyHeader& header, std::span<const std::byte> bytes) {
+        hasTaken_ = true;
+        take(take_, header, bytes);
+    });
+    reports_ = std::thread([this] { takeReports(); });
+}
 
-void AppLink::sendObject(uint32_t node, std::span<const std::byte> message) {
-    wire::splitIntoRecords(node, message, [this](std::span<const std::byte> record) { writer_.add(record); });
+void AppLink::wake() { futexWakeAll(link_->answersWord()); }
+
+void AppLink::stop() {
+    isStopping_ = true;
+    wake();
+    if (reports_.joinable()) reports_.join();
+}
+
+void AppLink::take(const NodeReports& reports, const wire::ReplyHeader& header, std::span<const std::byte> bytes) {
+    switch (static_cast<wire::ReplyKind>(header.kind)) {
+    case wire::ReplyKind::Object: return reports.message(header.requestId, bytes);
+    case wire::ReplyKind::Member:
+        if (bytes.empty()) return reports.lost(header.requestId);
+        return reports.came(header.requestId, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    default: return;
+    }
+}
+
+void AppLink::takeReports() {
+    reporter_ = std::this_thread::get_id();
+    int busy = 0;
+    while (!isStopping_) {
+        const uint32_t seen = link_->answersWord().load();
+        (void)link_->unanswered();
+        if (std::exchange(hasTaken_, false)) busy = kBusySlices;
+        take_.tick(monotonicNowNs());
+        bool isWaiting = false; // packets for which the ring has no room
+        if (busy > 0) isWaiting = !flush();
+        busy = isWaiting ? kBusySlices : std::max(busy - 1, 0);
+        futexWait(link_->answersWord(), seen, busy > 0 ? kSliceNs : kIdleSliceNs);
+    }
+}
+
+void AppLink::setDeadline(Deadline deadline) {
+    const std::lock_guard lock(sending_);
+    deadline_ = deadline;
+}
+
+PacketWriter& AppLink::writerFor(uint16_t receivers) {
+    const auto found = writers_.find(receivers);
+    if (found != writers_.end()) return found->second;
+    auto to = [this, receivers](std::span<const std::byte> packet) { return send(receivers, packet); };
+    return writers_.emplace(receivers, PacketWriter(std::move(to))).first->second;
+}
+
+void AppLink::toOne(objects::PeerId node, std::span<const std::byte> message) {
+    if (node <= wire::kMaxAddressedNode) sendObject(wire::toNode(node), message);
+}
+
+void AppLink::sendObject(uint16_t receivers, std::span<const std::byte> message) {
+    const std::lock_guard lock(sending_);
+    PacketWriter& writer = writerFor(receivers);
+    wire::splitIntoRecords(message, [&writer](std::span<const std::byte> record) { writer.add(record); });
     // Bounds the memory of packets that the nodes do not accept.
     constexpr size_t kMaxWaitingBytes = size_t{64} << 20;
     constexpr int64_t kPatienceMs = 60'000;
-    if (writer_.waitingBytes() > kMaxWaitingBytes && deadline_.passed()) deadline_ = Deadline::inMs(kPatienceMs);
-    (void)writer_.sendComplete();
+    if (writer.waitingBytes() > kMaxWaitingBytes && deadline_.passed()) deadline_ = Deadline::inMs(kPatienceMs);
+    (void)writer.sendComplete();
 }
 
 void AppLink::sendWindow(const wire::WindowConfig& window) {
     std::byte arguments[sizeof(uint32_t) + sizeof window];
     std::memcpy(arguments, &kWindow, sizeof kWindow);
     std::memcpy(arguments + sizeof kWindow, &window, sizeof window);
-    writer_.add(wire::kOpWindow, arguments);
+    const std::lock_guard lock(sending_);
+    writerFor(wire::kToAllNodes).add(wire::kOpWindow, arguments);
 }
 
 Result<void> AppLink::sendFrame(const wire::NativeFrame& frame, uint32_t number) {
-    if (auto sent = flush(); !sent) return sent;
+    const std::lock_guard lock(sending_);
+    if (auto sent = flushLocked(); !sent) return sent;
     const uint32_t swap[2] = {kWindow, number};
-    writer_.add(wire::kOpFrame, std::as_bytes(std::span(&frame, 1)));
-    writer_.add(wire::kOpSwap, std::as_bytes(std::span(swap)));
-    const auto sent = flush(); // after the deadline, the next call sends it
+    PacketWriter& writer = writerFor(wire::kToAllNodes);
+    writer.add(wire::kOpFrame, std::as_bytes(std::span(&frame, 1)));
+    writer.add(wire::kOpSwap, std::as_bytes(std::span(swap)));
+    const auto sent = writer.flush(); // after the deadline, the next call sends it
     if (!sent && !isAlive()) return sent;
     link_->submitted(number);
     return {};
 }
 
-Result<void> AppLink::flush() { return writer_.flush(); }
-
-void AppLink::serve() {
-    (void)link_->unanswered();
-    if (served_) served_();
+Result<void> AppLink::flush() {
+    const std::lock_guard lock(sending_);
+    return flushLocked();
 }
 
-// Requests are not served here: their replies would be written between the records of a message.
-Result<void> AppLink::send(std::span<const std::byte> packet) {
-    while (!link_->publish(0, packet)) {
+Result<void> AppLink::flushLocked() {
+    for (auto& [receivers, writer] : writers_)
+        if (auto sent = writer.flush(); !sent) return sent;
+    return {};
+}
+
+// The link's thread sends the rest later, because replies of nodes must not wait for room in the ring.
+Result<void> AppLink::send(uint16_t receivers, std::span<const std::byte> packet) {
+    while (!link_->publish(receivers, packet)) {
         const uint32_t seen = link_->chunkWord().load();
-        if (link_->publish(0, packet)) break;
+        if (link_->publish(receivers, packet)) break;
         if (!isAlive()) return Error{"the session is over"};
-        if (deadline_.passed()) return Error{"the render nodes accept no more data; see mural stat"};
+        if (deadline_.passed() || std::this_thread::get_id() == reporter_.load())
+            return Error{"the render nodes accept no more data; see mural stat"};
         futexWait(link_->chunkWord(), seen, deadline_.leftNs(kSliceNs));
     }
     return {};
@@ -77,13 +140,11 @@ Result<void> AppLink::send(std::span<const std::byte> packet) {
 
 template <class Condition>
 Result<void> AppLink::await(const std::atomic<uint32_t>& word, const char* what, Condition condition) {
-    serve(); // also if nothing is waited for: nodes request objects ahead of their use
     while (true) {
         const uint32_t seen = word.load();
         if (condition()) return {};
-        serve();
         if (!isAlive()) return Error{"the session is over"};
-        if (auto sent = flush(); !sent) return sent; // replies to the requests
+        if (auto sent = flush(); !sent) return sent;
         if (deadline_.passed()) return Error{std::string(what) + "; see mural stat"};
         futexWait(word, seen, deadline_.leftNs(kSliceNs));
     }
@@ -99,13 +160,10 @@ Result<void> AppLink::awaitDone(uint32_t frame) {
                  [&] { return static_cast<int32_t>(link_->framesWord().load() - frame) >= 0; });
 }
 
-void AppLink::serveUntil(Deadline deadline) {
-    while (isAlive()) {
-        const uint32_t seen = link_->answersWord().load();
-        serve();
-        if (!flush() || deadline.passed()) return;
-        futexWait(link_->answersWord(), seen, deadline.leftNs(kSliceNs));
-    }
+void AppLink::sleepUntil(Deadline deadline) {
+    (void)flush();
+    while (isAlive() && !deadline.passed())
+        futexWait(link_->framesWord(), link_->framesWord().load(), deadline.leftNs(kIdleSliceNs));
 }
 
 } // namespace mural::native

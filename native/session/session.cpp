@@ -1,8 +1,9 @@
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <set>
+#include <mutex>
 #include <unistd.h>
 #include <vector>
 
@@ -11,7 +12,9 @@
 #include "common/base/clock.hpp"
 #include "native/runtime/node_main.hpp"
 #include "native/session/app_link.hpp"
+#include "objects/ends/barrier_ends.hpp"
 #include "objects/ends/object_writer.hpp"
+#include "objects/ends/queue_ends.hpp"
 
 namespace mural {
 
@@ -41,18 +44,24 @@ Error startSession(int argc, char** argv) {
 
 } // namespace
 
-class Session::Impl {
+class Session::Impl final : public objects::MessageSink {
 public:
     Result<void> connect(const std::string& session) {
-        auto link = native::AppLink::connect(
-            session, [this](uint32_t node, std::span<const std::byte> message) { takeRequest(node, message); },
-            Deadline::inMs(kWelcomeMs));
+        auto link = native::AppLink::connect(session, Deadline::inMs(kWelcomeMs));
         if (!link) return link.error();
         link_ = std::move(*link);
+        const capture::Welcome& welcome = link_->welcome();
         objects::MasterOptions options;
         options.keepsPushed = false; // the head serves nodes that join
+        // Without multicast, a message to all is one copy per node, also for nodes that do not need it.
+        if (welcome.multicasts == 0) options.gatherNs = 0;
+        if (welcome.isOneMachine != 0) options.blobs = objects::BlobTransfer::Place;
+        options.hasFrames = true;
         writer_ = std::make_unique<objects::ObjectWriter>(*link_, options);
-        const capture::Welcome& welcome = link_->welcome();
+        queues_ = std::make_unique<objects::QueueHub>(*link_);
+        barriers_ = std::make_unique<objects::BarrierHub>(*this);
+        ownBarriers_ = std::make_unique<objects::BarrierLine>(toLeader_);
+        ownBarriers_->countByFrames([this] { return number_; });
         const bool isSized = welcome.width > 0 && welcome.height > 0;
         info_.nodes = static_cast<int>(welcome.nodeCount);
         info_.width = static_cast<int>(isSized ? welcome.width : kDefaultWidth);
@@ -69,12 +78,19 @@ public:
         link_->sendWindow(window);
         // All objects are in the stream from its beginning on, so a node knows that other references are invalid.
         link_->toAll(objects::encode(objects::CatalogueEndMessage{}).bytes());
-        link_->onServed([this] { writer_->tick(monotonicNowNs()); });
+        startReports();
+        // Barriers wait for these nodes from the first round on.
+        for (const Deadline deadline = Deadline::inMs(kWelcomeMs); nodesCame_ < welcome.members && !deadline.passed();)
+            link_->sleepUntil(Deadline::inMs(1));
         return {};
     }
-    ~Impl() {
+    ~Impl() override {
+        if (!link_) return;
         states_.clear();
-        if (writer_) writer_->close();
+        writer_->close();
+        queues_->close();
+        ownBarriers_->close();
+        link_->stop();
     }
 
     Result<uint64_t> startFrame(Deadline deadline) {
@@ -99,7 +115,11 @@ public:
     }
     void wait(Deadline deadline) {
         link_->setDeadline(deadline);
-        link_->serveUntil(deadline);
+        link_->sleepUntil(deadline);
+    }
+    Barrier barrier(std::string_view name) {
+        barriers_->join(name, kApplication, "the application");
+        return ownBarriers_->open(name);
     }
     void setHead(const Matrix4& pose) {
         for (const auto& row : pose.m)
@@ -109,23 +129,87 @@ public:
     }
 
     std::unique_ptr<native::AppLink> link_;
-    std::unique_ptr<objects::ObjectWriter> writer_; // uses link_
+    std::unique_ptr<objects::ObjectWriter> writer_; // uses link_, as queues_
+    std::unique_ptr<objects::QueueHub> queues_;
     SessionInfo info_;
     std::map<std::pair<std::type_index, std::string>, std::unique_ptr<AnyState>> states_;
 
 private:
-    void takeRequest(uint32_t node, std::span<const std::byte> message) {
-        if (!readers_.contains(node)) {
-            readers_.insert(node);
-            writer_->join(node, "node " + std::to_string(node));
+    // The application as a member of barriers, among nodes.
+    static constexpr objects::PeerId kApplication = UINT32_MAX;
+
+    // The messages of the leader of barriers, to nodes and to the application.
+    void toAll(std::span<const std::byte>) override {} // the leader has none
+    void toOne(objects::PeerId member, std::span<const std::byte> message) override {
+        if (member != kApplication) return link_->toOne(member, message);
+        const std::lock_guard lock(fromLeaderMutex_);
+        fromLeader_.emplace_back(message.begin(), message.end());
+        link_->wake();
+    }
+    // The link's thread passes them on, because the leader may be called from within the application's enter().
+    void passFromLeader() {
+        std::vector<std::vector<std::byte>> messages;
+        {
+            const std::lock_guard lock(fromLeaderMutex_);
+            messages.swap(fromLeader_);
+        }
+        for (const auto& message : messages) (void)ownBarriers_->input(message);
+    }
+    // The application's messages to the leader.
+    struct ToLeader final : objects::MessageSink {
+        explicit ToLeader(Impl& owner) : impl(owner) {}
+        void toAll(std::span<const std::byte>) override {}
+        void toOne(objects::PeerId, std::span<const std::byte> message) override {
+            impl.takeMessage(kApplication, message);
+        }
+        Impl& impl;
+    };
+
+    void startReports() {
+        native::NodeReports reports;
+        reports.message = [this](uint32_t node, std::span<const std::byte> message) { takeMessage(node, message); };
+        reports.came = [this](uint32_t node, const std::string& name) {
+            writer_->join(node, name);
+            // A later node may draw its first frame after the others have passed the barrier of that frame.
+            const bool isFirst = nodesCame_++ < link_->welcome().members;
+            barriers_->join(node, name,
+                            isFirst ? objects::BarrierHub::Awaited::AtOnce
+                                    : objects::BarrierHub::Awaited::FromItsFirstRound);
+        };
+        reports.lost = [this](uint32_t node) {
+            writer_->leave(node);
+            queues_->leave(node);
+            barriers_->leave(node);
+        };
+        reports.tick = [this](int64_t nowNs) {
+            writer_->tick(nowNs);
+            barriers_->tick(nowNs);
+            passFromLeader();
+        };
+        link_->start(std::move(reports));
+    }
+    // Passes a message on by its kind.
+    void takeMessage(uint32_t from, std::span<const std::byte> message) {
+        const int64_t nowNs = monotonicNowNs();
+        Result<void> taken;
+        switch (objects::kindOf(message)) {
+        case objects::MessageKind::Ask:
+        case objects::MessageKind::Done: taken = queues_->input(from, message); break;
+        case objects::MessageKind::Enter: taken = barriers_->input(from, message, nowNs); break;
+        default: taken = writer_->input(from, message, nowNs);
         }
         constexpr int kMaxComplaints = 10;
-        if (auto taken = writer_->input(node, message, monotonicNowNs()); !taken && complaints_++ < kMaxComplaints)
+        if (!taken && complaints_++ < kMaxComplaints)
             std::fprintf(stderr, "mural: %s\n", taken.error().message.c_str());
     }
 
-    std::set<uint32_t> readers_;
-    int complaints_ = 0;        // about messages of nodes
+    ToLeader toLeader_{*this};
+    std::unique_ptr<objects::BarrierHub> barriers_;
+    std::unique_ptr<objects::BarrierLine> ownBarriers_;
+    std::mutex fromLeaderMutex_;
+    std::vector<std::vector<std::byte>> fromLeader_; // to the application; guarded by fromLeaderMutex_
+    std::atomic<int> complaints_{0};                 // about messages of nodes
+    std::atomic<uint32_t> nodesCame_{0};
     wire::NativeFrame frame_{}; // the next one
     uint32_t number_ = 0;       // of the last sent frame
     int64_t startNs_ = 0;
@@ -160,6 +244,8 @@ Result<std::unique_ptr<SharedObject>> Session::shareAny(const archive::TypeLayou
 
 Result<uint64_t> Session::startFrame(Deadline deadline) { return impl_->startFrame(deadline); }
 Result<void> Session::finishAll(Deadline deadline) { return impl_->finishAll(deadline); }
+std::shared_ptr<AnyQueueMaster> Session::queueAny(std::string_view name) { return impl_->queues_->openAny(name); }
+Barrier Session::barrier(std::string_view name) { return impl_->barrier(name); }
 void Session::wait(Deadline deadline) { impl_->wait(deadline); }
 void Session::setHead(const Matrix4& pose) { impl_->setHead(pose); }
 const SessionInfo& Session::info() const { return impl_->info_; }

@@ -43,8 +43,9 @@ struct PlayerConfig {
     bool anyMovesZoom = false;               // the zooms of `areas` change, of any node; they apply to this node if…
     bool movesZoom = false;                  // …its own zoom changes
     RenderPass pass;
-    std::vector<Range> ranges; // the initial shares of all nodes of this picture, by rank; empty: there is one node
-    bool answers = true;       // answers requests for pixels; false: nodes of another pass answer them
+    std::vector<Range> ranges;     // the initial shares of all nodes of this picture, by rank; empty: there is one node
+    bool answers = true;           // answers requests for pixels; false: nodes of another pass answer them
+    bool isOnHeadsMachine = false; // processes of this machine share memory with the program
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
     std::optional<ScreenView> screen;         // includes the position of the eye
     bool skips = false;                       // draws no frames until drawAgain()

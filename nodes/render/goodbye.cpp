@@ -35,13 +35,14 @@ int64_t peakMemoryBytes() {
 } // namespace
 
 nlohmann::json goodbyeOf(const GoodbyeParts& parts) {
-    const auto& [player, exchange, sender, barrier, members] = parts;
+    const auto& [player, exchange, sender, barrier, members, receivedBytes] = parts;
     nlohmann::json bye;
     const PlayerCounts counts = player ? player->counts() : PlayerCounts{};
     bye["commands"] = counts.commands;
     bye["malformed"] = counts.malformed;
     bye["lacking"] = counts.lacking;
     bye["frames"] = counts.frames;
+    bye["receivedBytes"] = receivedBytes;
     bye["cpuSeconds"] = processCpuSeconds();
     bye["peakMemoryBytes"] = peakMemoryBytes();
     if (exchange) bye["exchangeBytes"] = exchange->bytesSent();

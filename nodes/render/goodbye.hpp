@@ -1,6 +1,7 @@
 // The last message of a node: totals of the session for the head's report.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
 namespace mural {
@@ -17,6 +18,7 @@ struct GoodbyeParts {
     const PictureSender* sender = nullptr;
     const BarrierPart* barrier = nullptr;
     int barrierMembers = 0;
+    uint64_t receivedBytes = 0; // from the head
 };
 
 [[nodiscard]] nlohmann::json goodbyeOf(const GoodbyeParts& parts);

@@ -19,6 +19,7 @@ namespace {
 constexpr int64_t kChangeOverMs = 20'000;
 constexpr int64_t kConnectMs = 20'000;
 constexpr int64_t kJoinMs = 10'000;
+constexpr int64_t kBesideMs = 2; // delay of packets to this node only, beside a group
 
 constexpr int64_t kTryMs = 4'000; // for one of several endpoints
 
@@ -95,7 +96,40 @@ Result<void> HeadConnection::follow(const std::string& stream, const std::string
     auto joined = rsp::joinGroup(*options, Deadline::inMs(kJoinMs));
     if (!joined) return joined.error();
     stream_ = std::move(*joined);
+    receiveBeside();
     return {};
+}
+
+HeadConnection::~HeadConnection() {
+    if (!beside_.joinable()) return;
+    connection_->close();
+    beside_.join();
+}
+
+// Reads packets to this node only until the end of the connection.
+void HeadConnection::receiveBeside() {
+    beside_ = std::thread([this] {
+        while (true) {
+            OwnPacket packet;
+            if (!connection_->read(std::as_writable_bytes(std::span(&packet.header, 1)), Deadline::never())) return;
+            if (packet.header.sizeBytes > wire::kMaxPacketBytes) return connection_->close();
+            packet.payload.resize(packet.header.sizeBytes);
+            if (!connection_->read(packet.payload, Deadline::never())) return;
+            const std::lock_guard lock(besideMutex_);
+            own_.push_back(std::move(packet));
+            hasOwn_ = true;
+        }
+    });
+}
+
+bool HeadConnection::takeBeside(wire::PacketHeader& header, std::span<const std::byte>& payload) {
+    const std::lock_guard lock(besideMutex_);
+    if (own_.empty()) return false;
+    header = own_.front().header;
+    payload_ = std::move(own_.front().payload);
+    own_.pop_front();
+    payload = payload_;
+    return true;
 }
 
 void HeadConnection::joinBeside(const std::string& stream, const std::string& secretHex, const std::string& name) {
@@ -115,6 +149,7 @@ Result<void> HeadConnection::changeOver(uint64_t skipBytes) {
     late_.reset();
     if (!stream) return stream.error();
     stream_ = std::move(*stream);
+    receiveBeside();
     log::debug(log::Topic::Stream, "receives by multicast from now on");
     if (deltaDecoder_) {
         const auto had = readBatch();
@@ -165,11 +200,14 @@ Result<std::optional<wire::PacketHeader>> HeadConnection::nextBefore(std::span<c
     while (true) {
         auto more = nextOfBatch(header, payload);
         if (more && more.value()) return std::optional(header);
+        if (more && hasOwn_ && takeBeside(header, payload)) return std::optional(header);
         if (more) {
-            if (isTimed) {
-                auto begun = awaitFirst(deadline);
+            if (isTimed || hasOwn_) {
+                const bool isSlice = hasOwn_ || beside_.joinable();
+                auto begun = awaitFirst(isSlice ? Deadline::inMs(kBesideMs) : deadline);
                 if (!begun) return begun.error();
-                if (!begun.value()) return std::optional<wire::PacketHeader>();
+                if (!begun.value() && isTimed && deadline.passed()) return std::optional<wire::PacketHeader>();
+                if (!begun.value()) continue;
             }
             if (!deltaDecoder_) {
                 auto packet = readPacket(payload);
@@ -178,6 +216,11 @@ Result<std::optional<wire::PacketHeader>> HeadConnection::nextBefore(std::span<c
             }
             auto head = readBatch();
             if (!head) return head.error();
+            if (head.value() == delta::BatchHead{}) {
+                auto packet = readPacket(payload); // to this node only
+                if (!packet) return packet.error();
+                return std::optional(packet.value());
+            }
             if (const auto opened = openBatch(head.value()); !opened) more = opened.error();
         }
         if (more) continue;

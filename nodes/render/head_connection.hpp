@@ -2,10 +2,12 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "streamcodec/delta/batch_codec.hpp"
@@ -21,8 +23,12 @@ namespace mural {
 class HeadConnection {
 public:
     static Result<std::unique_ptr<HeadConnection>> open(const NodeOptions& options);
+    ~HeadConnection();
+    HeadConnection(const HeadConnection&) = delete;
+    HeadConnection& operator=(const HeadConnection&) = delete;
 
-    // Receives packets from this multicast group (rsp://…) from now on, not from the connection.
+    // Receives packets from this multicast group (rsp://…) from now on. Packets to this node only still arrive on the
+    // connection.
     Result<void> follow(const std::string& stream, const std::string& secretHex, const std::string& name);
 
     // Joins the group, but receives packets from the connection until changeOver(). Reports errors to the head's user;
@@ -36,8 +42,8 @@ public:
     // `plant`: fault injection for tests.
     Result<void> decodeBatches(uint64_t cacheBytes, const std::string& plant);
 
-    // Returns the next packet; its payload is valid until the next call. Errors: the head is gone; invalid data, which
-    // has been reported to the head.
+    // Returns the next packet; packets to this node only come in any order with the others. Its payload is valid until
+    // the next call. Errors: the head is gone; invalid data, which has been reported to the head.
     Result<wire::PacketHeader> next(std::span<const std::byte>& payload);
     // The same, but returns nothing if no packet begins before the deadline.
     Result<std::optional<wire::PacketHeader>> nextBefore(std::span<const std::byte>& payload, Deadline deadline);
@@ -51,6 +57,9 @@ public:
     // The head's host, and the address that reaches it; empty: shared memory.
     [[nodiscard]] const std::string& headHost() const { return headHost_; }
     [[nodiscard]] std::string ownAddress() const { return connection_->path().ownAddress; }
+    [[nodiscard]] uint64_t receivedBytes() const {
+        return connection_->bytesRead() + (stream_ ? stream_->bytesRead() : 0);
+    }
 
 private:
     [[nodiscard]] Result<rsp::GroupOptions> groupOptions(const std::string& stream, const std::string& secretHex,
@@ -71,6 +80,8 @@ private:
     Result<void> readPayload(uint32_t sizeBytes, uint32_t maxBytes);
     Result<bool> nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload);
     Result<void> openBatch(delta::BatchHead head);
+    void receiveBeside();
+    bool takeBeside(wire::PacketHeader& header, std::span<const std::byte>& payload);
 
     std::vector<std::byte> payload_;
     std::unique_ptr<delta::BatchDecoder> batchDecoder_; // set together with deltaDecoder_
@@ -78,6 +89,15 @@ private:
     bool inBatch_ = false;
     std::mutex sending_;
     std::atomic<bool> broken_{false};
+    // Packets to this node only, which arrive beside the group's.
+    struct OwnPacket {
+        wire::PacketHeader header{};
+        std::vector<std::byte> payload;
+    };
+    std::thread beside_; // reads connection_ while stream_ exists
+    std::mutex besideMutex_;
+    std::deque<OwnPacket> own_;                 // guarded by besideMutex_
+    std::atomic<bool> hasOwn_{false};           // a packet has arrived at any time
     std::unique_ptr<StagedMulticastJoin> late_; // between joinBeside() and changeOver(); its thread sends messages
 };
 

@@ -234,7 +234,8 @@ private:
             windows_ = std::move(*windows);
         }
         if (setup_.sendPictures) openSender();
-        const PlayerConfig config = playerConfigOf(setup_, renderer);
+        PlayerConfig config = playerConfigOf(setup_, renderer);
+        config.isOnHeadsMachine = line_->headHost().empty();
         losesPackets_ = config.plant == "rejoin";
         if (config.plant == "slow" && setup_.node == 1) work_.slowDown(kSlower);
         if (config.plant == "spans" && setup_.node == 0) spans_.delay();
@@ -513,7 +514,8 @@ private:
 
     void sendGoodbye() {
         if (sender_ && !sender_->finish()) return; // the sender has logged the reason
-        const GoodbyeParts parts{player_.get(), exchange_.get(), sender_.get(), swaps_.get(), setup_.swapMembers};
+        const GoodbyeParts parts{player_.get(), exchange_.get(),    sender_.get(),
+                                 swaps_.get(),  setup_.swapMembers, line_->receivedBytes()};
         line_->sendText(wire::NodeMessage::Goodbye, jsonText(goodbyeOf(parts)));
     }
 

@@ -1,5 +1,7 @@
 #include "objects/barrier/object_barrier.hpp"
 
+#include <algorithm>
+
 namespace mural::objects {
 
 namespace {
@@ -8,45 +10,65 @@ constexpr int64_t kNsPerPatienceMs = 1'000'000;
 
 } // namespace
 
-void ObjectBarrierLeader::join(PeerId member, const std::string& name) { members_[member].name = name; }
+void ObjectBarrierLeader::join(PeerId member, const std::string& name, Awaited awaited) {
+    Member joined;
+    joined.name = name;
+    joined.since = awaited == Awaited::AtOnce ? 0 : UINT64_MAX;
+    members_[member] = joined;
+}
 
 void ObjectBarrierLeader::leave(PeerId member) {
     members_.erase(member);
-    releaseIfComplete();
+    releaseComplete();
 }
 
-Result<void> ObjectBarrierLeader::input(PeerId member, const EnterMessage& message, int64_t nowNs) {
-    const auto found = members_.find(member);
+Result<void> ObjectBarrierLeader::input(PeerId id, const EnterMessage& message, int64_t nowNs) {
+    const auto found = members_.find(id);
     if (found == members_.end())
-        return Error{"process " + std::to_string(member) + " is no member of barrier " + std::to_string(barrier_) +
+        return Error{"process " + std::to_string(id) + " is no member of barrier " + std::to_string(barrier_) +
                      "; it must join before it enters"};
-    // A newcomer does not know the round. A member may not be ahead of it.
-    if (message.round > round_)
-        return Error{found->second.name + " enters round " + std::to_string(message.round) + " of barrier " +
-                     std::to_string(barrier_) + " during round " + std::to_string(round_) + "; it is ignored"};
-    found->second.hasEntered = true;
-    found->second.deadlineNs =
-        message.patienceMs == 0 ? INT64_MAX : nowNs + int64_t{message.patienceMs} * kNsPerPatienceMs;
-    releaseIfComplete();
+    Member& member = found->second;
+    const uint64_t round = message.round == 0 ? released_ + 1 : message.round;
+    member.since = std::min(member.since, round);
+    if (round <= released_) { // of a newcomer, which was not awaited
+        sender_.toOne(id, GoMessage{barrier_, round, static_cast<uint32_t>(members_.size())});
+        return {};
+    }
+    member.entered = round;
+    member.deadlineNs = message.patienceMs == 0 ? INT64_MAX : nowNs + int64_t{message.patienceMs} * kNsPerPatienceMs;
+    releaseComplete();
     return {};
 }
 
-void ObjectBarrierLeader::releaseIfComplete() {
-    uint32_t entered = 0;
-    for (const auto& [id, member] : members_) entered += member.hasEntered;
-    if (entered == 0 || entered < members_.size()) return;
-    const uint64_t round = round_++;
-    for (auto& [id, member] : members_) {
-        member.hasEntered = false;
-        member.deadlineNs = INT64_MAX;
-        sender_.toOne(id, GoMessage{barrier_, round, entered});
+// The earliest round that a member waits for; 0: none.
+uint64_t ObjectBarrierLeader::firstEntered() const {
+    uint64_t first = 0;
+    for (const auto& [id, member] : members_)
+        if (member.entered != 0 && (first == 0 || member.entered < first)) first = member.entered;
+    return first;
+}
+
+void ObjectBarrierLeader::releaseComplete() {
+    while (const uint64_t round = firstEntered()) {
+        uint32_t entered = 0;
+        for (const auto& [id, member] : members_) {
+            if (member.isMissing(round)) return;
+            entered += member.entered >= round;
+        }
+        released_ = round;
+        for (auto& [id, member] : members_) {
+            if (member.entered != round) continue;
+            member.entered = 0;
+            member.deadlineNs = INT64_MAX;
+            sender_.toOne(id, GoMessage{barrier_, round, entered});
+        }
     }
 }
 
-std::string ObjectBarrierLeader::missing() const {
+std::string ObjectBarrierLeader::missing(uint64_t round) const {
     std::string names;
     for (const auto& [id, member] : members_) {
-        if (member.hasEntered) continue;
+        if (!member.isMissing(round)) continue;
         if (!names.empty()) names += ", ";
         names += member.name;
     }
@@ -54,19 +76,21 @@ std::string ObjectBarrierLeader::missing() const {
 }
 
 void ObjectBarrierLeader::tick(int64_t nowNs) {
-    const std::string names = missing();
     for (auto& [id, member] : members_) {
-        if (!member.hasEntered || member.deadlineNs > nowNs) continue;
-        sender_.toOne(id, LateMessage{barrier_, round_, names});
-        member.hasEntered = false;
+        if (member.entered == 0 || member.deadlineNs > nowNs) continue;
+        sender_.toOne(id, LateMessage{barrier_, member.entered, missing(member.entered)});
         member.deadlineNs = INT64_MAX;
+        member.hasLeft = true;
     }
+    for (auto& [id, member] : members_)
+        if (std::exchange(member.hasLeft, false)) member.entered = 0;
 }
 
-void ObjectBarrierMember::enter(uint32_t patienceMs) {
+void ObjectBarrierMember::enter(uint32_t patienceMs, uint64_t round) {
     isWaiting_ = true;
     result_.reset();
-    sender_.toOne(kWriter, EnterMessage{barrier_, round_ == 0 ? 0 : round_ + 1, patienceMs});
+    const uint64_t next = round_ == 0 ? 0 : round_ + 1;
+    sender_.toOne(kWriter, EnterMessage{barrier_, round == 0 ? next : round, patienceMs});
 }
 
 void ObjectBarrierMember::input(const GoMessage& message) {
@@ -79,8 +103,9 @@ void ObjectBarrierMember::input(const GoMessage& message) {
 void ObjectBarrierMember::input(const LateMessage& message) {
     if (!isWaiting_) return;
     isWaiting_ = false;
-    result_ = Result<uint32_t>(Error{"barrier " + std::to_string(barrier_) + " was not passed within the deadline: " +
-                                     message.missing + " did not enter; enter again, or end these processes"});
+    result_ =
+        Result<uint32_t>(Error{"barrier \"" + name_ + "\" was not passed within the deadline: " + message.missing +
+                               " did not enter; enter again, or end these processes"});
 }
 
 std::optional<Result<uint32_t>> ObjectBarrierMember::result() const { return result_; }

@@ -36,8 +36,9 @@ void BlobIntake::startRequests(int64_t nowNs) {
         const std::shared_ptr<BlobEntry> entry = queue_.front();
         queue_.pop_front();
         if (entry->isHere || entry.use_count() == 1) continue; // arrived, or no state refers to it any more
-        const auto [at, isNew] = requests_.try_emplace(
-            entry->ref.name, Request{entry, BlobAssembly(entry->ref.name, entry->ref.sizeBytes), 0, nowNs});
+        const auto [at, isNew] =
+            requests_.try_emplace(entry->ref.name, Request{entry, BlobAssembly(entry->ref.name, entry->ref.sizeBytes),
+                                                           0, options_.requestsPlaces, nowNs});
         if (isNew) ask(entry->ref.name, at->second, nowNs);
     }
 }
@@ -47,7 +48,8 @@ void BlobIntake::ask(const BlobName& name, Request& request, int64_t nowNs) {
     const uint64_t end = std::min(request.assembly.sizeBytes(), from + kWindowBytes);
     request.askedBytes = end;
     request.progressNs = nowNs;
-    sender_.toOne(kWriter, WantBlobMessage{name, from, static_cast<uint32_t>(end - from)});
+    const bool takesPlace = request.takesPlace && from == 0;
+    sender_.toOne(kWriter, WantBlobMessage{name, from, static_cast<uint32_t>(end - from), takesPlace});
 }
 
 Result<void> BlobIntake::input(const BlobBeginMessage& message) {
@@ -103,7 +105,7 @@ void BlobIntake::writePushed(BlobTransfer transfer, const MessageFunction& emit)
     }
 }
 
-void BlobIntake::input(const BlobAtMessage& message) {
+void BlobIntake::input(const BlobAtMessage& message, int64_t nowNs) {
     const BlobPlace& place = message.place;
     if (place.sizeBytes > options_.mostBlobBytes) return;
     if (const Blob known = store_.find(place.name); known.sizeBytes() == place.sizeBytes && !known.empty()) {
@@ -111,11 +113,17 @@ void BlobIntake::input(const BlobAtMessage& message) {
         return;
     }
     const Result<Blob> blob = openPlace(place, options_.open);
+    const auto request = requests_.find(place.name);
     if (!blob) {
         mappingProblem_ = blob.error().message;
-        return;
+        if (request == requests_.end()) return;
+        request->second.takesPlace = false;
+        return ask(place.name, request->second, nowNs);
     }
-    pushed_.push_back(arrived(blob.value()));
+    const bool isRequested = request != requests_.end();
+    const Blob stored = arrived(blob.value());
+    if (!isRequested) pushed_.push_back(stored);
+    startRequests(nowNs);
 }
 
 Result<void> BlobIntake::input(const RefuseMessage& message, int64_t nowNs) {

@@ -19,6 +19,7 @@ constexpr PeerId kWriter = 0;
 struct BlobIntakeOptions {
     uint64_t storeBytes = uint64_t{1} << 30;     // blobs that no state uses stay up to this sum
     uint64_t mostBlobBytes = uint64_t{64} << 30; // larger blobs are refused
+    bool requestsPlaces = false;                 // the writer is a process of this machine, so its blobs can be mapped
     OpenOptions open;
 };
 
@@ -41,7 +42,7 @@ public:
     Result<void> input(const BlobDataMessage& message, int64_t nowNs);
     // Maps the blob. After a failure its bytes are requested when a state needs them, and mappingProblem() has the
     // reason.
-    void input(const BlobAtMessage& message);
+    void input(const BlobAtMessage& message, int64_t nowNs);
     Result<void> input(const RefuseMessage& message, int64_t nowNs);
     // Pushed blobs stay at least until this call, after the commit that follows them.
     void releasePushed() { pushed_.clear(); }
@@ -62,6 +63,7 @@ private:
         std::weak_ptr<BlobEntry> entry;
         BlobAssembly assembly;
         uint64_t askedBytes = 0;
+        bool takesPlace = false; // no place of the blob was invalid
         int64_t progressNs = 0;
     };
     // Returns the stored blob; it stays in the store as long as a copy exists.

@@ -21,7 +21,7 @@ Result<void> ObjectKeeper::input(std::span<const std::byte> bytes, int64_t nowNs
     if (const auto* commit = std::get_if<CommitMessage>(&*message)) return apply(*commit, nowNs);
     if (const auto* begin = std::get_if<BlobBeginMessage>(&*message)) return blobs_.input(*begin);
     if (const auto* data = std::get_if<BlobDataMessage>(&*message)) return blobs_.input(*data, nowNs);
-    if (const auto* at = std::get_if<BlobAtMessage>(&*message)) return blobs_.input(*at), Result<void>();
+    if (const auto* at = std::get_if<BlobAtMessage>(&*message)) return blobs_.input(*at, nowNs), Result<void>();
     if (const auto* refuse = std::get_if<RefuseMessage>(&*message)) return blobs_.input(*refuse, nowNs);
     if (const auto* offer = std::get_if<OfferMessage>(&*message)) {
         const auto found = objects_.find(offer->number);

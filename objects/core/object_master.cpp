@@ -105,7 +105,8 @@ void ObjectMaster::releasePushes(const Slot& slot) {
 }
 
 void ObjectMaster::retire(std::shared_ptr<const Slot> slot) {
-    if (!slot->blobs.empty() && currentFrame_ > 1) retired_.emplace_back(currentFrame_, std::move(slot));
+    if (!slot->blobs.empty() && (currentFrame_ > 1 || options_.hasFrames))
+        retired_.emplace_back(currentFrame_, std::move(slot));
 }
 
 Result<Version> ObjectMaster::commit(ObjectNumber number, const ObjectChange& change) {

@@ -21,6 +21,8 @@ struct MasterOptions {
     bool keepsPushed = true;
     // Requests of several readers within this time are answered by one message to all. 0: each at once, to one.
     int64_t gatherNs = 2'000'000;
+    // frame() is called for every frame: replaced blobs stay until the frame in preparation is drawn, also the first.
+    bool hasFrames = false;
 };
 
 struct ObjectDescription {

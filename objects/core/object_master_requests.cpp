@@ -47,6 +47,14 @@ Result<void> ObjectMaster::want(PeerId reader, const WantMessage& message, int64
 }
 
 Result<void> ObjectMaster::wantBlob(PeerId reader, const WantBlobMessage& message, int64_t nowNs) {
+    if (message.takesPlace) {
+        const auto found = blobs_.find(message.name);
+        const std::shared_ptr<BlobEntry> entry = found == blobs_.end() ? nullptr : found->second.lock();
+        if (const auto place = entry ? placeOf(entry->blob) : std::nullopt) {
+            sender_.toOne(reader, BlobAtMessage{*place});
+            return {};
+        }
+    }
     const BlobRange range{message.name, {message.offset, message.count}};
     if (options_.gatherNs == 0) {
         answerBlob(range, {{reader, 0}});

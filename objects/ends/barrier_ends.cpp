@@ -18,10 +18,24 @@ constexpr int64_t kLeaderGraceNs = 1'000'000'000;   // after the deadline, for t
 
 } // namespace
 
-void BarrierHub::join(PeerId member, const std::string& name) {
+void BarrierHub::join(PeerId member, const std::string& name, Awaited awaited) {
     const std::lock_guard lock(mutex_);
     members_[member] = name;
-    for (auto& [number, leader] : leaders_) leader.join(member, name);
+    for (auto& [number, leader] : leaders_) leader.join(member, name, awaited);
+}
+
+void BarrierHub::join(std::string_view barrier, PeerId member, const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    if (ObjectBarrierLeader* const leader = leaderOf(numberOfName(barrier))) leader->join(member, name);
+}
+
+ObjectBarrierLeader* BarrierHub::leaderOf(uint32_t barrier) {
+    const auto found = leaders_.find(barrier);
+    if (found != leaders_.end()) return &found->second;
+    if (leaders_.size() >= kMaxBarriers) return nullptr;
+    ObjectBarrierLeader& leader = leaders_.try_emplace(barrier, sink_, barrier).first->second;
+    for (const auto& [id, name] : members_) leader.join(id, name);
+    return &leader;
 }
 
 void BarrierHub::leave(PeerId member) {
@@ -36,15 +50,10 @@ Result<void> BarrierHub::input(PeerId member, std::span<const std::byte> bytes, 
     const auto* const enter = std::get_if<EnterMessage>(&*message);
     if (!enter) return unexpectedMessage(*message, "the leader of barriers");
     const std::lock_guard lock(mutex_);
-    auto found = leaders_.find(enter->barrier);
-    if (found == leaders_.end()) {
-        if (leaders_.size() >= kMaxBarriers)
-            return Error{"process " + std::to_string(member) + " enters a new barrier beside " +
-                         std::to_string(kMaxBarriers) + " others; use fewer barriers"};
-        found = leaders_.try_emplace(enter->barrier, sink_, enter->barrier).first;
-        for (const auto& [id, name] : members_) found->second.join(id, name);
-    }
-    return found->second.input(member, *enter, nowNs);
+    ObjectBarrierLeader* const leader = leaderOf(enter->barrier);
+    if (leader) return leader->input(member, *enter, nowNs);
+    return Error{"process " + std::to_string(member) + " enters a new barrier beside " + std::to_string(kMaxBarriers) +
+                 " others; use fewer barriers"};
 }
 
 void BarrierHub::tick(int64_t nowNs) {
@@ -59,6 +68,24 @@ struct BarrierLine::Core {
     std::condition_variable arrival;
     MessageSink& sink;
     std::map<uint32_t, ObjectBarrierMember> members;
+    std::function<bool(Deadline)> receive; // see BarrierLine::waitBy
+    std::function<uint64_t()> frame;       // see BarrierLine::countByFrames
+    struct Position {
+        uint64_t frame = 0;
+        uint64_t times = 0;
+    };
+    std::map<uint32_t, Position> positions; // by barrier
+
+    // Returns the next round of a barrier in the current frame; 0: members count rounds.
+    uint64_t nextRound(uint32_t barrier) {
+        constexpr uint64_t kRoundsPerFrame = 1 << 16;
+        if (!frame) return 0;
+        Position& at = positions[barrier];
+        const uint64_t now = frame();
+        at.times = now == at.frame ? at.times + 1 : 1;
+        at.frame = now;
+        return (now + 1) * kRoundsPerFrame + at.times;
+    }
     bool isClosed = false;
 };
 
@@ -75,7 +102,9 @@ public:
         objects::ObjectBarrierMember& member = core_->members.at(number_);
         const int64_t leftNs = deadline.leftNs();
         const int64_t leftMs = (leftNs + kNsPerMs - 1) / kNsPerMs;
-        member.enter(leftNs == INT64_MAX ? 0 : static_cast<uint32_t>(std::clamp<int64_t>(leftMs, 1, UINT32_MAX)));
+        const auto patienceMs =
+            leftNs == INT64_MAX ? 0U : static_cast<uint32_t>(std::clamp<int64_t>(leftMs, 1, UINT32_MAX));
+        member.enter(patienceMs, core_->nextRound(number_));
         int64_t lateSinceNs = 0;
         for (;;) {
             if (const auto result = member.result()) return *result;
@@ -88,6 +117,13 @@ public:
                                  "not reply; see its log"};
             }
             const int64_t sliceNs = std::max<int64_t>(deadline.leftNs(objects::kBarrierWaitSliceNs), kNsPerMs);
+            if (core_->receive) {
+                lock.unlock();
+                const bool mayArrive = core_->receive(Deadline::inMs(sliceNs / kNsPerMs));
+                lock.lock();
+                if (!mayArrive) return over();
+                continue;
+            }
             core_->arrival.wait_for(lock, std::chrono::nanoseconds(sliceNs));
         }
     }
@@ -108,7 +144,7 @@ BarrierLine::BarrierLine(MessageSink& sink) : core_(std::make_shared<Core>(sink)
 
 Barrier BarrierLine::open(std::string_view name) {
     const std::lock_guard lock(core_->mutex);
-    core_->members.try_emplace(numberOfName(name), core_->sink, numberOfName(name));
+    core_->members.try_emplace(numberOfName(name), core_->sink, numberOfName(name), std::string(name));
     return Barrier(std::make_shared<Barrier::Member>(core_, name));
 }
 
@@ -128,6 +164,10 @@ Result<void> BarrierLine::input(std::span<const std::byte> bytes) {
     core_->arrival.notify_all();
     return {};
 }
+
+void BarrierLine::waitBy(std::function<bool(Deadline)> receive) { core_->receive = std::move(receive); }
+
+void BarrierLine::countByFrames(std::function<uint64_t()> frame) { core_->frame = std::move(frame); }
 
 void BarrierLine::close() {
     {

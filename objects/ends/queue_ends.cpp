@@ -1,6 +1,8 @@
 #include "objects/ends/queue_ends.hpp"
 
+#include <algorithm>
 #include <condition_variable>
+#include <deque>
 #include <map>
 #include <mutex>
 
@@ -27,7 +29,19 @@ struct QueueHub::Core {
 
     std::mutex mutex;
     MessageSink& sink;
+    // Forgets a queue that has ended and that no QueueMaster uses. Requires the mutex.
+    void forgetIfEnded(uint32_t queue) {
+        const auto found = masters.find(queue);
+        if (found == masters.end() || !found->second.hasEnded() || handles[queue] > 0) return;
+        masters.erase(found);
+        handles.erase(queue);
+        ended.push_back(queue);
+        if (ended.size() > kMaxQueues) ended.pop_front();
+    }
+
     std::map<uint32_t, ObjectQueueMaster> masters;
+    std::map<uint32_t, uint32_t> handles; // number of HubQueues
+    std::deque<uint32_t> ended;           // the latest
     bool isClosed = false;
 };
 
@@ -36,7 +50,16 @@ namespace {
 class HubQueue final : public AnyQueueMaster {
 public:
     HubQueue(std::shared_ptr<QueueHub::Core> core, std::string_view name)
-        : core_(std::move(core)), name_(name), number_(numberOfName(name)) {}
+        : core_(std::move(core)), name_(name), number_(numberOfName(name)) {
+        const std::lock_guard lock(core_->mutex);
+        ++core_->handles[number_];
+        core_->master(number_);
+    }
+    ~HubQueue() override {
+        const std::lock_guard lock(core_->mutex);
+        --core_->handles[number_];
+        core_->forgetIfEnded(number_);
+    }
 
     Result<void> push(std::span<const std::byte> item, uint64_t frame) override {
         const std::lock_guard lock(core_->mutex);
@@ -79,16 +102,27 @@ Result<void> QueueHub::input(PeerId reader, std::span<const std::byte> bytes) {
     const std::lock_guard lock(core_->mutex);
     if (core_->isClosed) return {};
     const uint32_t queue = ask ? ask->queue : done->queue;
+    if (!core_->masters.contains(queue) && std::ranges::find(core_->ended, queue) != core_->ended.end()) {
+        if (ask) MessageSender(core_->sink).toOne(reader, ClosedMessage{queue});
+        return {};
+    }
     if (core_->masters.size() >= kMaxQueues && !core_->masters.contains(queue))
         return Error{"reader " + std::to_string(reader) + " requests items of a queue that does not exist, beside " +
                      std::to_string(kMaxQueues) + " others; the request is ignored"};
-    return ask ? core_->master(queue).input(reader, *ask) : core_->master(queue).input(reader, *done);
+    auto taken = ask ? core_->master(queue).input(reader, *ask) : core_->master(queue).input(reader, *done);
+    core_->forgetIfEnded(queue);
+    return taken;
 }
 
 void QueueHub::leave(PeerId reader) {
     const std::lock_guard lock(core_->mutex);
     if (core_->isClosed) return;
-    for (auto& [number, master] : core_->masters) master.leave(reader);
+    std::vector<uint32_t> queues;
+    for (auto& [number, master] : core_->masters) {
+        master.leave(reader);
+        queues.push_back(number);
+    }
+    for (const uint32_t queue : queues) core_->forgetIfEnded(queue);
 }
 
 void QueueHub::close() {
@@ -103,6 +137,7 @@ struct QueueLine::Core {
     std::condition_variable arrival;
     MessageSink& sink;
     std::map<uint32_t, ObjectQueueReader> readers;
+    std::function<bool(Deadline)> receive; // see QueueLine::waitBy
     bool isClosed = false;
 };
 
@@ -117,13 +152,24 @@ public:
         std::unique_lock lock(core_->mutex);
         for (;;) {
             if (core_->isClosed) return queueOver(name_);
-            ObjectQueueReader& reader = core_->readers.at(number_);
+            ObjectQueueReader& reader = core_->readers.try_emplace(number_, core_->sink, number_).first->second;
             if (auto item = reader.pop(monotonicNowNs())) return std::optional(std::move(item->bytes));
-            if (reader.hasEnded()) return std::optional<std::vector<std::byte>>();
+            if (reader.hasEnded()) {
+                core_->readers.erase(number_); // a later request is answered by Closed again
+                return std::optional<std::vector<std::byte>>();
+            }
             if (deadline.passed())
                 return Error{"queue \"" + name_ +
                              "\": no item has arrived within the deadline; wait longer, or close it"};
-            core_->arrival.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kQueueWaitSliceNs)));
+            const int64_t sliceNs = deadline.leftNs(kQueueWaitSliceNs);
+            if (core_->receive) {
+                lock.unlock();
+                const bool mayArrive = core_->receive(Deadline::inMs(sliceNs / kNsPerMs + 1));
+                lock.lock();
+                if (!mayArrive) return queueOver(name_);
+                continue;
+            }
+            core_->arrival.wait_for(lock, std::chrono::nanoseconds(sliceNs));
         }
     }
     [[nodiscard]] const std::string& name() const override { return name_; }
@@ -160,6 +206,8 @@ Result<void> QueueLine::input(std::span<const std::byte> bytes, int64_t nowNs) {
     core_->arrival.notify_all();
     return {};
 }
+
+void QueueLine::waitBy(std::function<bool(Deadline)> receive) { core_->receive = std::move(receive); }
 
 void QueueLine::close() {
     {

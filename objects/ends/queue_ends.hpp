@@ -1,6 +1,7 @@
 // The queues of a process: they add types, threads and waiting to the state machines. A queue is known by its name.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -20,7 +21,8 @@ public:
     QueueHub(const QueueHub&) = delete;
     QueueHub& operator=(const QueueHub&) = delete;
 
-    // Opens the queue of this name; it exists until the hub's end. Readers may request items before.
+    // Opens the queue of this name. Readers may request items before. The hub forgets a queue after its end and the end
+    // of its last QueueMaster; readers that ask afterwards receive the end, unless the name was opened again.
     template <class T> QueueMaster<T> open(std::string_view name) { return QueueMaster<T>(openAny(name)); }
     std::shared_ptr<AnyQueueMaster> openAny(std::string_view name);
 
@@ -49,6 +51,8 @@ public:
     template <class T> QueueReader<T> open(std::string_view name) { return QueueReader<T>(openAny(name)); }
     std::shared_ptr<AnyQueueReader> openAny(std::string_view name);
 
+    // Sets the function that waiting calls receive by (ReaderEnd::waitBy).
+    void waitBy(std::function<bool(Deadline)> receive);
     // Applies an Item or a Closed.
     Result<void> input(std::span<const std::byte> message, int64_t nowNs);
     // Makes waiting calls return an error.

@@ -76,7 +76,7 @@ void ObjectQueueMaster::serve() {
         given_.emplace(first->first, Given{reader, std::move(first->second)});
         waiting_.erase(first);
     }
-    if (!isClosed_ || !waiting_.empty() || !given_.empty()) return;
+    if (!hasEnded()) return;
     for (const auto& [reader, asked] : asked_)
         if (informed_.insert(reader).second) sender_.toOne(reader, ClosedMessage{queue_});
 }

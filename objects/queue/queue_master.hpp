@@ -37,6 +37,8 @@ public:
     // Returns the number of items that no reader has received.
     [[nodiscard]] size_t size() const { return waiting_.size(); }
     [[nodiscard]] size_t unfinished() const { return given_.size(); }
+    // Whether the queue is closed and all items are finished.
+    [[nodiscard]] bool hasEnded() const { return isClosed_ && waiting_.empty() && given_.empty(); }
 
 private:
     struct Item {

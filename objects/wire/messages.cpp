@@ -173,11 +173,15 @@ void write(MessageWriter& to, const WantBlobMessage& m) {
     to.fixed(m.name);
     to.number(m.offset);
     to.number(m.count);
+    to.byte(m.takesPlace);
 }
 void read(MessageReader& from, WantBlobMessage& m) {
     m.name = from.fixed<BlobName>();
     m.offset = from.number();
     m.count = static_cast<uint32_t>(from.numberUpTo(kMaxWantedBytes));
+    const uint8_t takesPlace = from.byte();
+    if (takesPlace > 1) return from.fail();
+    m.takesPlace = takesPlace != 0;
 }
 
 void write(MessageWriter& to, const TokenMessage& m) {
@@ -301,6 +305,10 @@ std::optional<Message> decode(std::span<const std::byte> bytes) {
     const uint8_t kind = from.byte();
     if (kind == 0) return std::nullopt;
     return decodeAs<0>(kind - 1U, from);
+}
+
+MessageKind kindOf(std::span<const std::byte> bytes) {
+    return bytes.empty() ? MessageKind{} : static_cast<MessageKind>(bytes.front());
 }
 
 const char* nameOf(MessageKind kind) {

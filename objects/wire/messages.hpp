@@ -150,7 +150,8 @@ struct WantMessage {
 struct WantBlobMessage {
     BlobName name{};
     uint64_t offset = 0;
-    uint32_t count = 0; // bytes
+    uint32_t count = 0;      // bytes
+    bool takesPlace = false; // the reader maps the whole blob if the reply is a BlobAt
 };
 
 // Acknowledges that a reader has applied a version.
@@ -220,6 +221,9 @@ void encodeInto(archive::ByteBuffer& out, const Message& message);
 
 // Returns nothing for bytes that are no message.
 std::optional<Message> decode(std::span<const std::byte> bytes);
+
+// Returns the kind of an encoded message; 0 if it has none.
+MessageKind kindOf(std::span<const std::byte> bytes);
 
 // Returns the name of a kind, for diagnostics; "unknown" for others.
 const char* nameOf(MessageKind kind);

@@ -13,12 +13,13 @@ namespace mural::wire {
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
 constexpr uint32_t kVersion = 4;        // of packets and records, also in traces
 constexpr uint32_t kBatchVersion =
-    11; // of batches (streamcodec/delta/), head commands and messages, between head and nodes only
+    12; // of batches (streamcodec/delta/), head commands and messages, between head and nodes only
 
 // Identifier of a capture stream: a client (a process of the program) and one of its threads.
 // streamOf(0, 0) is the head's own stream, whose packets hold one HeadCommand each.
 constexpr uint32_t streamOf(uint32_t client, uint32_t thread) { return client << 16 | thread; }
 constexpr uint32_t clientOf(uint32_t stream) { return stream >> 16; }
+constexpr uint16_t threadOf(uint32_t stream) { return static_cast<uint16_t>(stream); }
 
 struct PacketHeader {
     uint32_t sizeBytes; // of the payload

@@ -21,6 +21,9 @@ enum class ReplyKind : uint32_t {
     Sum = 3,       // u64 values, added over nodes
     // A message of a node about distributed objects, unasked: requestId is the node. For programs with the native API.
     Object = 4,
+    // Unasked, for the same programs: node requestId is a member of the session; the bytes are its name. No bytes: it
+    // is no longer a member.
+    Member = 5,
 };
 
 // Header of each reply in the client's reply ring (head → program). The bytes follow immediately, and the next header

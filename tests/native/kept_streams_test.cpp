@@ -37,8 +37,8 @@ public:
           writer_(*this, {.keepsPushed = false}) {}
     ~Application() override { writer_.close(); }
 
-    void toAll(std::span<const std::byte> message) override { send(wire::kAllNodes, message); }
-    void toOne(objects::PeerId node, std::span<const std::byte> message) override { send(node, message); }
+    void toAll(std::span<const std::byte> message) override { send(message); }
+    void toOne(objects::PeerId, std::span<const std::byte>) override {} // not kept
     objects::ObjectWriter& writer() { return writer_; }
 
     void frame(uint32_t number) {
@@ -52,8 +52,8 @@ public:
     }
 
 private:
-    void send(uint32_t node, std::span<const std::byte> message) {
-        wire::splitIntoRecords(node, message, [this](std::span<const std::byte> record) { packets_.add(record); });
+    void send(std::span<const std::byte> message) {
+        wire::splitIntoRecords(message, [this](std::span<const std::byte> record) { packets_.add(record); });
         EXPECT_TRUE(packets_.sendComplete().ok());
     }
 
@@ -63,7 +63,7 @@ private:
 
 // A node that receives a snapshot.
 struct Node {
-    native::ClientObjects objects{0, [](std::span<const std::byte>) {}, {}};
+    native::ClientObjects objects{[](std::span<const std::byte>) {}, {}};
     uint64_t frame = 0;
     int swaps = 0;
 
@@ -74,7 +74,7 @@ struct Node {
             wire::RecordView r;
             while (walk.next(r)) {
                 if (r.opcode == wire::kOpObject) {
-                    EXPECT_TRUE(objects.input(r.arguments).ok());
+                    EXPECT_TRUE(objects.input(wire::kToAllNodes, r.arguments).ok());
                 } else if (r.opcode == wire::kOpFrame) {
                     std::memcpy(&frame, r.arguments.data(), sizeof frame);
                     objects.frame(frame);
@@ -134,8 +134,7 @@ TEST(NativeStream, keepsTheBeginningOfAMessage) {
     struct Sink final : objects::MessageSink {
         native::PacketWriter* writer = nullptr;
         void toAll(std::span<const std::byte> message) override {
-            wire::splitIntoRecords(wire::kAllNodes, message,
-                                   [this](std::span<const std::byte> record) { writer->add(record); });
+            wire::splitIntoRecords(message, [this](std::span<const std::byte> record) { writer->add(record); });
         }
         void toOne(objects::PeerId, std::span<const std::byte>) override {}
     } sink;

@@ -5,6 +5,7 @@ faults of programs are reported.
   native_programs.py --build build/release [--cases restarted_nodes,faults] [--list]
 """
 
+import json
 import os
 import signal
 import sys
@@ -28,18 +29,18 @@ def program(context):
     return os.path.join(context.build, "tests", "native", "native_scene")
 
 
-def draw(context, options, frames=FRAMES, fault="", environment=None, wanted=0, during=None):
-    """Returns (error or None, pictures, lines of standard error)."""
+def draw(context, options, frames=FRAMES, fault="", environment=None, wanted=0, during=None, words=()):
+    """Returns (error or None, pictures, lines of standard error and output)."""
     with tempfile.TemporaryDirectory(prefix="mural-native.") as folder:
         out = os.path.join(folder, "out")
-        command = [program(context), "--frames", str(frames)] + (["--fault", fault] if fault else [])
+        command = [program(context), "--frames", str(frames)] + (["--fault", fault] if fault else []) + list(words)
         path = os.path.dirname(context.mural) + ":" + os.environ.get("PATH", "/usr/bin:/bin")
         more = options.split() + ["--display", "none", "--size", SIZE, "--out", out]
         with context.run(command, more, dict({"PATH": path}, **(environment or {}))) as run:
             wrong = during(run, out) if during else None
             wrong = wrong or cases.check_end(run, wanted)
             shown = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))] if os.path.isdir(out) else []
-            return wrong, shown, list(run.standard_error)
+            return wrong, shown, list(run.standard_error) + list(run.standard_output)
 
 
 SINGLE = {}  # by number of frames
@@ -55,13 +56,18 @@ def single(context, frames=FRAMES):
     return SINGLE[frames]
 
 
-def differing(wanted, shown):
+# Pixels of a picture in which triangles have equal depths. Items of a queue have no order, so either may win.
+TIES = 3
+
+
+def differing(wanted, shown, allowed=0):
+    """Compares all pictures. `allowed`: pixels per picture that may differ. Returns an error or None."""
     if len(wanted) != len(shown):
         return "%d pictures instead of %d" % (len(shown), len(wanted))
     difference = pictures.Difference()
     for number, (a, b) in enumerate(zip(wanted, shown), 1):
         difference.add_pictures(a, b, "frame %d" % number)
-    return None if difference.pixels == 0 else "%d pixels differ, %s" % (difference.pixels, difference.place)
+    return None if difference.pixels <= allowed * len(wanted) else "%d pixels differ, %s" % (difference.pixels, difference.place)
 
 
 @cases.case
@@ -105,16 +111,7 @@ def restarted_nodes_are_exact(context):
     frames = 200
     wanted = single(context, frames)
     for options in ("--tiles 2x1", "--db 2"):
-        def during(run, out):
-            deadline = time.monotonic() + 30
-            while time.monotonic() < deadline and (not os.path.isdir(out) or len(os.listdir(out)) < 10):
-                time.sleep(0.01)
-            nodes = run.processes(NODE)
-            if len(nodes) != 2:
-                return "%d nodes" % len(nodes)
-            os.kill(nodes[-1], signal.SIGKILL)
-            return None
-        wrong, shown, lines = draw(context, options, frames, during=during)
+        wrong, shown, lines = draw(context, options, frames, during=kill_one(2))
         if wrong:
             return "%s: %s" % (options, wrong)
         if not any("is back" in line or "rejoin" in line for line in lines):
@@ -123,6 +120,107 @@ def restarted_nodes_are_exact(context):
         if wrong:
             return "%s: after the return, %s" % (options, wrong)
     return None
+
+
+@cases.case
+def queues_give_each_item_to_one_node(context):
+    """Nodes draw what they take from a queue; together it is the whole scene, once."""
+    wanted = single(context)
+    for options in ("--tiles 1x1", "--db 2", "--db 3", "--db 2 --delta on"):
+        wrong, shown, lines = draw(context, options, words=["--work", "queue"])
+        wrong = wrong or differing(wanted, shown, TIES)
+        if wrong or any("thrown" in line for line in lines):
+            return "%s: %s; %s" % (options, wrong, " | ".join(lines[-3:]))
+    return None
+
+
+def kill_one(count):
+    """Returns a function that kills the last of `count` nodes after some pictures."""
+    def during(run, out):
+        deadline = time.monotonic() + 30
+        while time.monotonic() < deadline and (not os.path.isdir(out) or len(os.listdir(out)) < 10):
+            time.sleep(0.01)
+        nodes = run.processes(NODE)
+        if len(nodes) != count:
+            return "%d nodes" % len(nodes)
+        os.kill(nodes[-1], signal.SIGKILL)
+        return None
+    return during
+
+
+@cases.case
+def queues_pass_on_the_items_of_lost_nodes(context):
+    frames = 150
+    wanted = single(context, frames)
+    wrong, shown, lines = draw(context, "--db 3", frames, during=kill_one(3), words=["--work", "queue"])
+    wrong = wrong or differing(wanted[-20:], shown[-20:], TIES)
+    if wrong or any("within the deadline" in line for line in lines):
+        return "%s; %s" % (wrong, " | ".join(lines[-4:]))
+    # Without the lost node, too, the others draw everything.
+    missing = [n for n, (a, b) in enumerate(zip(wanted, shown)) if differing([a], [b], TIES)]
+    return None if len(missing) <= 6 else "%d pictures lack items: %s" % (len(missing), missing)
+
+
+@cases.case
+def barriers_release_nodes_and_application_together(context):
+    frames = 200
+    wanted = single(context, frames)
+    wrong, shown, lines = draw(context, "--db 3", frames, during=kill_one(3), words=["--work", "barrier"])
+    entered = [int(line.split()[-1]) for line in lines if line.startswith("entered ")]
+    wrong = wrong or differing(wanted[-20:], shown[-20:])
+    if wrong or any("within the deadline" in line for line in lines):
+        return "%s; %s" % (wrong, " | ".join(lines[-4:]))
+    if len(entered) != frames or entered[:5] != [4] * 5 or entered[-1] != 4 or min(entered) != 3:
+        return "%d rounds with %s members" % (len(entered), sorted(set(entered)))
+    return None
+
+
+@cases.case
+def nodes_receive_the_objects_that_they_ask_for(context):
+    """Each of four nodes draws a quarter of 24 objects of 300 KB, and receives a quarter of the bytes."""
+    whole = 24 * 300000
+    for options in ("--db 4", "--db 4 --delta on"):
+        with tempfile.TemporaryDirectory(prefix="mural-native.") as folder:
+            report = os.path.join(folder, "report.json")
+            wrong, shown, lines = draw(context, options + " --report " + report, words=["--chunk-bytes", "300000"],
+                                       environment={"MURAL_PLANT": "places"})
+            wrong = wrong or differing(single(context), shown)
+            if wrong:
+                return "%s: %s; %s" % (options, wrong, " | ".join(lines[-3:]))
+            with open(report, encoding="utf-8") as file:
+                received = [node["receivedBytes"] for node in json.load(file)["nodes"]]
+        print("%s: bytes received per node %s of %d" % (options, received, whole))
+        if len(received) != 4 or not all(.23 * whole < count < .30 * whole for count in received):
+            return "%s: the nodes receive %s bytes of %d" % (options, received, whole)
+    return None
+
+
+def blobs_of(pid):
+    """Returns {inode: size in bytes} of the blobs that a process maps."""
+    found = {}
+    with open("/proc/%d/maps" % pid, encoding="utf-8") as file:
+        for line in file:
+            words = line.split()
+            if len(words) > 5 and words[5].startswith("/memfd:mural-blob"):
+                first, end = (int(word, 16) for word in words[0].split("-"))
+                found[int(words[4])] = end - first
+    return found
+
+
+@cases.case
+def processes_of_a_machine_share_blobs(context):
+    """All nodes of this machine map the memory of the application's blobs, also a restarted one."""
+    def during(run, out):
+        wrong = kill_one(2)(run, out)
+        deadline = time.monotonic() + 30
+        while not wrong and time.monotonic() < deadline:
+            mapped = [blobs_of(pid) for pid in run.processes(NODE)]
+            if len(mapped) == 2 and len(mapped[0]) >= 24 and mapped[0] == mapped[1]:
+                return None
+            time.sleep(0.02)
+        return wrong or "the nodes map %s blobs" % [len(blobs) for blobs in mapped]
+    wrong, shown, lines = draw(context, "--tiles 2x1", 300, during=during, words=["--chunk-bytes", "300000"])
+    return wrong or differing(single(context, 300)[-20:], shown[-20:])
 
 
 @cases.case

@@ -13,9 +13,9 @@ std::vector<std::byte> bytesOf(size_t count) {
     return bytes;
 }
 
-std::vector<std::byte> recordsOf(uint32_t node, std::span<const std::byte> message) {
+std::vector<std::byte> recordsOf(std::span<const std::byte> message) {
     std::vector<std::byte> records;
-    splitIntoRecords(node, message, [&](std::span<const std::byte> record) {
+    splitIntoRecords(message, [&](std::span<const std::byte> record) {
         records.insert(records.end(), record.begin(), record.end());
     });
     return records;
@@ -26,7 +26,7 @@ TEST(ObjectRecords, returnEveryMessage) {
     for (const size_t size : {size_t{0}, size_t{1}, size_t{4}, size_t{37}, kObjectPieceBytes, kObjectPieceBytes + 1,
                               3 * kObjectPieceBytes + 5}) {
         const auto message = bytesOf(size);
-        const auto records = recordsOf(3, message);
+        const auto records = recordsOf(message);
         RecordWalk walk(records);
         RecordView r;
         while (walk.next(r)) {
@@ -35,19 +35,18 @@ TEST(ObjectRecords, returnEveryMessage) {
         }
         ASSERT_TRUE(walk.whole());
         ASSERT_TRUE(joiner.isComplete()) << size;
-        EXPECT_EQ(joiner.node(), 3u);
         EXPECT_TRUE(std::ranges::equal(joiner.message(), message)) << size;
     }
 }
 
 TEST(ObjectRecords, refuseMalformedArguments) {
     ObjectRecordJoiner joiner;
-    EXPECT_FALSE(joiner.add(bytesOf(8))); // no length
-    const uint32_t tooLong[4] = {kAllNodes, 0, 5, 0};
+    EXPECT_FALSE(joiner.add(bytesOf(4))); // no length
+    const uint32_t tooLong[3] = {0, 5, 0};
     EXPECT_FALSE(joiner.add(std::as_bytes(std::span(tooLong))));
-    const uint32_t tooMany[4] = {kAllNodes, kMaxObjectBytes, 4, 0};
+    const uint32_t tooMany[3] = {kMaxObjectBytes, 4, 0};
     EXPECT_FALSE(joiner.add(std::as_bytes(std::span(tooMany))));
-    const uint32_t valid[4] = {kAllNodes, 0, 4, 7};
+    const uint32_t valid[3] = {0, 4, 7};
     EXPECT_TRUE(joiner.add(std::as_bytes(std::span(valid))));
     EXPECT_EQ(joiner.message().size(), 4u);
 }

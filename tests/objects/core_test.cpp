@@ -211,6 +211,39 @@ TEST(ObjectMirror, repeatsRequestsWithoutAReply) {
     EXPECT_EQ(mirror.find({kId, 0}).state->slots[0]->blobs[0]->blob, blob);
 }
 
+// The writer is a process of this machine, here this one. `isMoved`: the place in its reply is invalid.
+void requestBlobByPlace(bool isMoved) {
+    RecordingSink sink, toWriter;
+    ObjectMaster master(sink, {.gatherNs = 0});
+    const ObjectNumber number = master.share(described({.delivery = Delivery::OnDemand})).value();
+    const Blob blob = Blob::copyOf(std::vector<std::byte>(kMinSharedBlobBytes, std::byte{3})).value();
+    commit(master, number, value(1), {blob});
+    BlobIntakeOptions options;
+    options.requestsPlaces = true;
+    ObjectMirror mirror(toWriter, options);
+    mirror.want({kId, 0}, 0);
+    std::vector<MessageKind> replies;
+    for (int step = 0; step < 5; ++step) {
+        for (const auto& sent : sink.take()) {
+            Message message = *decode(sent.bytes);
+            replies.push_back(kindOf(sent.bytes));
+            if (auto* const at = std::get_if<BlobAtMessage>(&message); at && isMoved) ++at->place.inode;
+            ASSERT_TRUE(mirror.input(message, 0));
+        }
+        if (step == 0) mirror.want({kId, 0}, 0);
+        for (const auto& sent : toWriter.take()) ASSERT_TRUE(master.input(1, sent.bytes, 0));
+    }
+    const auto found = mirror.find({kId, 0});
+    ASSERT_EQ(found.presence, ObjectMirror::Presence::Here);
+    EXPECT_EQ(found.state->slots[0]->blobs[0]->blob, blob);
+    const bool hasBytes = std::ranges::find(replies, MessageKind::BlobData) != replies.end();
+    EXPECT_NE(std::ranges::find(replies, MessageKind::BlobAt), replies.end());
+    EXPECT_EQ(hasBytes, isMoved);
+}
+
+TEST(ObjectMirror, mapsRequestedBlobsOfItsMachine) { requestBlobByPlace(false); }
+TEST(ObjectMirror, requestsTheBytesOfABlobThatItCannotMap) { requestBlobByPlace(true); }
+
 TEST(ObjectMirror, requestsPushedObjectsAfterAGap) {
     RecordingSink sink, toWriter;
     ObjectMaster master(sink, {.gatherNs = 0});

@@ -25,7 +25,7 @@ std::vector<Message> examples() {
         RefuseMessage{Refusal::UnknownBlob, 0, 0, name},
         CatalogueEndMessage{12},
         WantMessage{3, 4, 2},
-        WantBlobMessage{name, 5, 1 << 20},
+        WantBlobMessage{name, 5, 1 << 20, false},
         TokenMessage{3, 5},
         AskMessage{1, 16},
         ItemMessage{1, 44, 7, kSomeBytes},

@@ -16,6 +16,8 @@
 #include <typeindex>
 #include <utility>
 
+#include <mural/barrier.hpp>
+#include <mural/queue.hpp>
 #include <mural/render.hpp>
 #include <mural/shared.hpp>
 
@@ -46,11 +48,12 @@ class Application;
 
 // Makes the two objects of a program.
 struct Program {
-    std::function<std::unique_ptr<Application>()> application;
-    std::function<std::unique_ptr<Renderer>()> renderer;
+    std::function<std::unique_ptr<Application>()> application; // called once, in the application's process
+    std::function<std::unique_ptr<Renderer>()> renderer;       // called once on each render node
 };
 
-// A running session, seen from the application. One thread uses it: that of the Application.
+// A running session, seen from the application. One thread uses it: that of the Application. Requests of the nodes are
+// served by a thread of Mural's.
 class Session {
 public:
     // Joins the session that started this process. In the process of a render node it runs the node, and ends the
@@ -86,6 +89,16 @@ public:
         return Shared<T>(std::move(*object), std::move(value));
     }
 
+    // The queue of this name. Each item goes to one render node, which reads it by RenderTask::queue(). A queue of one
+    // frame is closed after its last item, and its name contains the number of the frame.
+    template <class T> [[nodiscard]] QueueMaster<T> queue(std::string_view name) {
+        return QueueMaster<T>(queueAny(name));
+    }
+    // The barrier of this name. All render nodes are members of every barrier (RenderTask::barrier()). This call makes
+    // the application a member as well; call it in Application::start(), before nodes enter. The application enters for
+    // the frame that it has sent last.
+    [[nodiscard]] Barrier barrier(std::string_view name);
+
     // Waits until the nodes are not further behind than the latency of the session permits. Then commits all changed
     // objects, and sends the frame. Returns its number. Errors: the deadline has passed, and nothing was sent; the
     // session is over.
@@ -93,13 +106,14 @@ public:
     // Waits until all nodes have drawn every frame so far. Errors as startFrame().
     Result<void> finishAll(Deadline deadline = Deadline::inMs(10'000));
 
-    // Waits until the deadline, and serves the requests of the nodes for objects meanwhile.
+    // Waits until the deadline, or the end of the session.
     void wait(Deadline deadline);
 
     // The pose of the observer's head in the room: transforms head coordinates to room coordinates. Belongs to the next
     // frame. A matrix with values that are not finite is ignored.
     void setHead(const Matrix4& pose);
 
+    // The size of the picture, and the number of nodes.
     [[nodiscard]] const SessionInfo& info() const;
     // False after the head has ended the session.
     [[nodiscard]] bool isRunning() const;
@@ -124,6 +138,7 @@ private:
     };
     [[nodiscard]] AnyState* findState(std::type_index type, const std::string& name) const;
     void addState(std::type_index type, const std::string& name, std::unique_ptr<AnyState> state);
+    std::shared_ptr<AnyQueueMaster> queueAny(std::string_view name);
     Result<std::unique_ptr<SharedObject>> shareAny(const archive::TypeLayout& layout, const ShareOptions& options);
 
     class Impl;
@@ -135,7 +150,11 @@ private:
 class Application {
 public:
     virtual ~Application() = default;
-    // argv lacks Mural's own arguments. An error ends the session.
+    // Reads the command line, before there is a session: --help and wrong options start none. Next::End ends the
+    // process with status 0, every other value goes on. An error ends it with status 1. argv lacks Mural's own
+    // arguments.
+    virtual Result<Next> parse(int /*argc*/, char** /*argv*/) { return Next::Frame; }
+    // Called once in a session, with the same arguments. An error ends the session.
     virtual Result<void> start(Session&, int /*argc*/, char** /*argv*/) { return {}; }
     // Prepares a frame by changing objects. Default: waits.
     virtual Next update(Session&, const FrameClock&) { return Next::Wait; }
@@ -147,6 +166,7 @@ public:
 // session could be joined or started.
 int run(int argc, char** argv, const Program& program);
 
+// The same with an Application and a Renderer that have default constructors.
 template <class App, class Render> int run(int argc, char** argv) {
     return run(argc, argv, {[] { return std::make_unique<App>(); }, [] { return std::make_unique<Render>(); }});
 }

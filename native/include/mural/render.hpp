@@ -13,7 +13,9 @@
 #include <string_view>
 #include <utility>
 
+#include <mural/barrier.hpp>
 #include <mural/object_reader.hpp>
+#include <mural/queue.hpp>
 
 #include "common/base/clock.hpp"
 #include "common/base/result.hpp"
@@ -58,16 +60,18 @@ struct RenderContext {
 
 // The context that a renderer draws with.
 struct GlWish {
-    int major = 3, minor = 3; // lowest version
-    bool isCore = true;       // core profile; otherwise the compatibility profile
-    bool isDebug = false;
-    int samples = 0; // multisampling; 0: none
-    int depthBits = 24;
-    int stencilBits = 8;
+    int major = 3;        // lowest version: its first number…
+    int minor = 3;        // …and its second
+    bool isCore = true;   // core profile; otherwise the compatibility profile
+    bool isDebug = false; // debug context
+    int samples = 0;      // multisampling; 0: none
+    int depthBits = 24;   // lowest number
+    int stencilBits = 8;  // lowest number
 };
 
 // How the parts of several ranges become one picture.
 struct Composition {
+    // The rule that combines two parts.
     enum class By : uint8_t {
         Depth, // the fragment that passes the depth test
         // Premultiplied colours, blended from back to front by Renderer::order. The part of a range must be convex, and
@@ -77,8 +81,8 @@ struct Composition {
     // The depth test of the renderer's draws.
     enum class DepthTest : uint8_t { Less, LessOrEqual, Greater, GreaterOrEqual };
 
-    By by = By::Depth;
-    DepthTest depthTest = DepthTest::Less;
+    By by = By::Depth;                     // rule of the combination
+    DepthTest depthTest = DepthTest::Less; // for By::Depth
 };
 
 // The GL of a render node, valid from Renderer::start to Renderer::end.
@@ -92,7 +96,9 @@ struct Pipe {
 // task left.
 class RenderTask {
 public:
+    // The part of the frame, of the data, and the eye that the task draws.
     [[nodiscard]] const RenderContext& context() const;
+    // The frame that the task belongs to.
     [[nodiscard]] const Frame& frame() const;
 
     // Sets the distances of the clipping planes, in units of the scene. Default: 0.1 and 100. Invalid values (near not
@@ -127,9 +133,20 @@ public:
     // All distributed objects.
     [[nodiscard]] ObjectReader& objects() const;
 
+    // The queue of this name, to which the application adds items (Session::queue()). All calls with one name share the
+    // items that the node has received. A lost node's items go to other nodes, so an item may be processed twice.
+    template <class T> [[nodiscard]] QueueReader<T> queue(std::string_view name) const {
+        return QueueReader<T>(queueAny(name));
+    }
+    // The barrier of this name. All render nodes are members of every barrier, and so is the application after
+    // Session::barrier(). Lost nodes are not waited for. Rounds belong to frames: the n-th call in a frame waits for
+    // the n-th calls in that frame. A node without a part of the frame has no tasks, and is missing.
+    [[nodiscard]] Barrier barrier(std::string_view name) const;
+
     explicit RenderTask(native::TaskState& state) : state_(state) {} // internal
 
 private:
+    std::shared_ptr<AnyQueueReader> queueAny(std::string_view name) const;
     const void* keep(std::shared_ptr<const void> snapshot) const; // until the end of the task
     void reportMissing(const std::string& problem) const;
 
@@ -147,8 +164,9 @@ public:
     virtual Result<void> start(Pipe&) { return {}; }
     // The context is current. Not called if the node is killed, or if its GL is lost.
     virtual void end(Pipe&) {}
-    // Called before and after the tasks of a frame.
+    // Called before the tasks of a frame.
     virtual void frameStart(Pipe&, const Frame&) {}
+    // Called after them.
     virtual void frameEnd(Pipe&, const Frame&) {}
 
     // Clears the part. Default: applies the task, and clears colour to 0 and depth to the far value of composition().

@@ -8,6 +8,7 @@
 #include "nodes/head/broadcast/bytes_of.hpp"
 #include "nodes/head/broadcast/head_command.hpp"
 #include "nodes/frame_spans/span_scope.hpp"
+#include "streamcodec/delta/batch_head.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/packet.hpp"
 
@@ -67,6 +68,22 @@ bool StreamBroadcaster::broadcast(wire::HeadCommand command, std::span<const std
     const bool sent = broadcast(wire::streamOf(0, 0), commandBytes(command, arguments));
     flush();
     return sent;
+}
+
+// A link with batches marks the packet by the head of an empty batch, which no encoder writes.
+void StreamBroadcaster::sendToNode(uint32_t node, uint32_t stream, std::span<const std::byte> payload) {
+    if (joining_ > 0) std::this_thread::yield();
+    const std::lock_guard lock(sendMutex_);
+    if (node >= links_.size()) return;
+    NodeConnection& to = *links_[node].load();
+    const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), stream};
+    std::vector<std::byte> head;
+    if (to.inBatches() && !to.byMulticast()) delta::putBatchHead({}, head);
+    const auto bytes = bytesOf(header);
+    head.insert(head.end(), bytes.begin(), bytes.end());
+    const SpanScope sends(SpanKind::Send);
+    sendTo(to, head, payload);
+    sendingTo_ = kNobody;
 }
 
 void StreamBroadcaster::scheduleBeforeNextPacket(wire::HeadCommand command, std::span<const std::byte> arguments) {
@@ -190,8 +207,7 @@ void StreamBroadcaster::flushLocked() {
 }
 
 void StreamBroadcaster::flushLinksLocked() {
-    for (NodeConnection* link : links_)
-        if (!link->byMulticast()) link->flush();
+    for (NodeConnection* link : links_) link->flush(); // packets to one node use its connection also beside multicast
     if (multicast_) multicast_->flush();
 }
 

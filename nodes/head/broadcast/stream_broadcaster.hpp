@@ -43,6 +43,9 @@ public:
     // Returns false if no node lives. Blocks while a node's connection is full.
     bool broadcast(uint32_t stream, std::span<const std::byte> payload);
     bool broadcast(wire::HeadCommand command, std::span<const std::byte> arguments);
+    // Sends a packet to one node only, on its own connection. It may overtake packets to all nodes. Dropped if the node
+    // does not live. Blocks while the node's connection is full.
+    void sendToNode(uint32_t node, uint32_t stream, std::span<const std::byte> payload);
     // Queues a command that precedes the next packet of a program on all nodes. Replaces a queued command of the same
     // kind. A ClockProbe gets the time at which it is sent. Never blocks.
     void scheduleBeforeNextPacket(wire::HeadCommand command, std::span<const std::byte> arguments);

@@ -7,6 +7,7 @@
 
 #include "nodes/head/broadcast/bytes_of.hpp"
 #include "nodes/head/capture/liveness_mark.hpp"
+#include "streamcodec/wire/object_records.hpp"
 #include "streamcodec/wire/packet.hpp"
 
 namespace mural {
@@ -26,10 +27,12 @@ std::string nameOf(pid_t pid) {
 
 } // namespace
 
-CaptureClient::CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
-                             CaptureEvents& events, FrameStatistics* statistics, SentFrames* sentFrames)
+CaptureClient::CaptureClient(uint32_t id, pid_t pid, capture::ProgramKind kind, std::unique_ptr<CaptureMemory> memory,
+                             StreamBroadcaster& nodes, CaptureEvents& events, FrameStatistics* statistics,
+                             SentFrames* sentFrames)
     : id_(id),
       pid_(pid),
+      kind_(kind),
       name_(nameOf(pid)),
       memory_(std::move(memory)),
       nodes_(nodes),
@@ -129,6 +132,17 @@ void CaptureClient::reportEnd() {
     events_.programEnded(id_, problem);
 }
 
+void CaptureClient::send(const CaptureMemory::Range& range) {
+    const uint32_t stream = wire::streamOf(id_, range.stream);
+    unflushedBytes_ += range.bytes.size();
+    if (kind_ == capture::ProgramKind::Native && range.stream != wire::kToAllNodes)
+        return nodes_.sendToNode(range.stream - wire::toNode(0), stream, range.bytes);
+    nodes_.broadcast(stream, range.bytes);
+    bytesSent_.fetch_add(range.bytes.size(), std::memory_order_relaxed);
+    if (sentFrames_ && sentFrames_->areWanted)
+        if (const auto frame = frames_.published(range.stream, range.bytes)) sentFrames_->add(*frame);
+}
+
 bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
     const CaptureMemory::Next next = memory_->next(range);
     if (next == CaptureMemory::Next::Empty) return false;
@@ -137,13 +151,7 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
         return false;
     }
     spans_.published(range.bytes);
-    if (!range.bytes.empty()) {
-        nodes_.broadcast(wire::streamOf(id_, range.stream), range.bytes);
-        unflushedBytes_ += range.bytes.size();
-        bytesSent_.fetch_add(range.bytes.size(), std::memory_order_relaxed);
-        if (sentFrames_ && sentFrames_->areWanted)
-            if (const auto frame = frames_.published(range.stream, range.bytes)) sentFrames_->add(*frame);
-    }
+    if (!range.bytes.empty()) send(range);
     if (!memory_->take(range)) {
         drop("it returned more chunks than it received; the program may have overwritten its shared memory");
         return false;

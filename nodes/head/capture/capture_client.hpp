@@ -51,8 +51,8 @@ struct SentFrames {
 class CaptureClient {
 public:
     // statistics: null: none. sentFrames: null: none.
-    CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
-                  CaptureEvents& events, FrameStatistics* statistics, SentFrames* sentFrames);
+    CaptureClient(uint32_t id, pid_t pid, capture::ProgramKind kind, std::unique_ptr<CaptureMemory> memory,
+                  StreamBroadcaster& nodes, CaptureEvents& events, FrameStatistics* statistics, SentFrames* sentFrames);
     ~CaptureClient(); // calls stop()
 
     // Errors: no threads available.
@@ -75,6 +75,7 @@ private:
     void pump();
     void waitForMore();
     void reportEnd();
+    void send(const CaptureMemory::Range& range);
     bool pumpNext(CaptureMemory::Range& range); // returns false if there is no publication, or the ring is corrupt
     [[nodiscard]] bool drained() const;
     [[nodiscard]] bool programGone() const;
@@ -86,6 +87,7 @@ private:
 
     const uint32_t id_;
     const pid_t pid_;
+    const capture::ProgramKind kind_;
     const std::string name_;
     const std::unique_ptr<CaptureMemory> memory_;
     StreamBroadcaster& nodes_;

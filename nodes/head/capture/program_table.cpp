@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <poll.h>
 
+#include "common/base/copy_bytes.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/frames/picture_replies.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -38,10 +39,11 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid, capture::ProgramKind kin
     Admission admission;
     admission.welcome = terms_.welcome;
     admission.welcome.clientId = id;
+    admission.welcome.members = static_cast<uint32_t>(members_.size());
     (*memory)->setLatency(latency_);
     admission.memoryFd = (*memory)->fdToPass();
     admission.extensions = terms_.extensions;
-    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this, terms_.statistics,
+    admitted_[id] = std::make_shared<CaptureClient>(id, pid, kind, std::move(*memory), nodes_, *this, terms_.statistics,
                                                     terms_.sentFrames);
     return admission;
 }
@@ -59,6 +61,8 @@ void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
         if (headGone_) client->memory().setHeadGone(); // the nodes were lost before its admission
         log::debug(log::Topic::Program, client->describe(), " has connected");
         events_.came(*client);
+        if (terms_.kind == capture::ProgramKind::Native)
+            for (const auto& [node, name] : members_) client->reply(memberReply(node, name));
         started = client->start(std::move(socket));
         clients_[id] = client;
         count = clients_.size();
@@ -98,6 +102,33 @@ void ProgramTable::refuseFrom(const std::string& reason) {
 
 void ProgramTable::reply(uint32_t id, Reply reply) {
     if (const auto client = find(id)) client->reply(std::move(reply));
+}
+
+// No name: the node is no longer a member.
+Reply ProgramTable::memberReply(int node, const std::string& name) {
+    Reply reply;
+    reply.header.requestId = static_cast<uint32_t>(node);
+    reply.header.kind = static_cast<uint32_t>(wire::ReplyKind::Member);
+    reply.bytes = ByteBuffer::ofSize(name.size());
+    copyBytes(std::as_bytes(std::span(name)), reply.bytes.span());
+    reply.header.sizeBytes = reply.bytes.size();
+    return reply;
+}
+
+void ProgramTable::reportMember(int node, const std::string& name) {
+    if (terms_.kind != capture::ProgramKind::Native) return;
+    for (const auto& [id, client] : clients_) client->reply(memberReply(node, name));
+}
+
+void ProgramTable::memberCame(int node, const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    members_[node] = name;
+    reportMember(node, name);
+}
+
+void ProgramTable::memberLost(int node) {
+    const std::lock_guard lock(mutex_);
+    if (members_.erase(node) > 0) reportMember(node, "");
 }
 
 void ProgramTable::driverEvent(const wire::DriverEvent& event, const std::string& text) {

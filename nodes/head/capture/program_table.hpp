@@ -47,6 +47,10 @@ public:
 
     void refuseFrom(const std::string& reason); // refuses programs from now on; call before drainAll()
     void reply(uint32_t client, Reply reply);
+    // Reports to programs with the native API that a node has become a member of the session, or is no longer one.
+    // `name`: for messages. Later programs receive the members first.
+    void memberCame(int node, const std::string& name);
+    void memberLost(int node);
     void driverEvent(const wire::DriverEvent& event, const std::string& text);
     // Sets the frames that programs may be ahead of the nodes, for current and later programs. Each program applies the
     // value from its next swap on; a waiting one continues at once if the value permits it.
@@ -77,6 +81,8 @@ public:
     [[nodiscard]] std::vector<ProgramStatus> status() const; // current programs, without their frames
 
 private:
+    static Reply memberReply(int node, const std::string& name);
+    void reportMember(int node, const std::string& name); // requires mutex_
     using Clients = std::map<uint32_t, std::shared_ptr<CaptureClient>>;
     struct Progress { // latest progress sent to a program
         uint32_t finished = 0, shown = 0;
@@ -95,6 +101,7 @@ private:
 
     mutable std::mutex mutex_; // guards the members below
     std::string refusal_;
+    std::map<int, std::string> members_; // names of the nodes
     bool headGone_ = false;
     uint32_t nextId_ = 1;
     uint32_t latency_;

@@ -14,7 +14,7 @@ namespace mural {
 
 namespace {
 
-// The keeper receives all blobs in the stream, so it requests none.
+// Blobs that the keeper could not map are requested by the nodes that need them.
 class NoRequests final : public objects::MessageSink {
 public:
     void toAll(std::span<const std::byte>) override {}
@@ -23,7 +23,8 @@ public:
 
 class NativeStream final : public snapshot::KeptStream {
 public:
-    explicit NativeStream(size_t maxBytes) : maxBytes_(maxBytes) {}
+    NativeStream(size_t maxBytes, bool isOneMachine)
+        : maxBytes_(maxBytes), transfer_(isOneMachine ? objects::BlobTransfer::Place : objects::BlobTransfer::Bytes) {}
 
     void append(uint32_t stream, std::span<const std::byte> payload) override {
         const uint32_t clientId = wire::clientOf(stream);
@@ -55,9 +56,8 @@ public:
                 splitter.add(stream, records);
             };
             for (const auto& [window, record] : client.windows) add(record);
-            client.keeper->writeCatalogue(objects::BlobTransfer::Bytes, [&](std::span<const std::byte> message) {
-                wire::splitIntoRecords(wire::kAllNodes, message, add);
-            });
+            client.keeper->writeCatalogue(
+                transfer_, [&](std::span<const std::byte> message) { wire::splitIntoRecords(message, add); });
             if (!client.frame.empty()) add(client.frame);
             if (!client.open.empty()) add(client.open); // the rest follows
         }
@@ -86,12 +86,13 @@ private:
             open.insert(open.end(), record.begin(), record.end());
             const bool isValid = joiner.add(arguments);
             if (!isValid || joiner.isComplete()) open.clear();
-            if (!isValid || !joiner.isComplete() || joiner.node() != wire::kAllNodes) return;
+            if (!isValid || !joiner.isComplete()) return;
             if (auto merged = keeper->input(joiner.message(), 0); !merged)
                 log::debug(log::Topic::Node, "rejoin log: ", merged.error().message);
         }
     };
     const size_t maxBytes_;
+    const objects::BlobTransfer transfer_;
     std::map<uint32_t, Client> clients_;
 };
 
@@ -101,8 +102,8 @@ std::unique_ptr<snapshot::KeptStream> makeCapturedStream(size_t maxBytes) {
     return std::make_unique<snapshot::StreamSnapshot>(maxBytes);
 }
 
-std::unique_ptr<snapshot::KeptStream> makeNativeStream(size_t maxBytes) {
-    return std::make_unique<NativeStream>(maxBytes);
+std::unique_ptr<snapshot::KeptStream> makeNativeStream(size_t maxBytes, bool isOneMachine) {
+    return std::make_unique<NativeStream>(maxBytes, isOneMachine);
 }
 
 } // namespace mural

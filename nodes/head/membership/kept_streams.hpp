@@ -11,6 +11,7 @@ namespace mural {
 // For captured programs: the live GL commands.
 std::unique_ptr<snapshot::KeptStream> makeCapturedStream(size_t maxBytes);
 // For programs with the native API: the newest version of every object, the windows, and the latest frame.
-std::unique_ptr<snapshot::KeptStream> makeNativeStream(size_t maxBytes);
+// `isOneMachine`: nodes map blobs of the head.
+std::unique_ptr<snapshot::KeptStream> makeNativeStream(size_t maxBytes, bool isOneMachine = false);
 
 } // namespace mural

@@ -96,9 +96,12 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     spares_ = config_.spareHosts;
     terms.tries = spares_.empty() ? config_.restartNodes : std::min(config_.restartNodes, 1);
     terms.readyPatienceMs = options_.readyPatienceMs;
-    if (terms.tries > 0 && options_.startNode)
-        nodes_.setRejoinLog(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes),
-                                                        isNative() ? makeNativeStream : makeCapturedStream));
+    if (terms.tries > 0 && options_.startNode) {
+        RejoinLog::MakeStream makeStream = makeCapturedStream;
+        if (isNative())
+            makeStream = [isOneMachine = isOneMachine()](size_t most) { return makeNativeStream(most, isOneMachine); };
+        nodes_.setRejoinLog(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes), makeStream));
+    }
     returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
     // other displays need no pictures in any plan
     if (plans_.current()->takesPictures || config_.display == Display::Windows)

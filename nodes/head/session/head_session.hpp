@@ -223,6 +223,8 @@ private:
     [[nodiscard]] compound::PixelSize sizeOfWall() const;
     // Whether the nodes run a program with the native API.
     [[nodiscard]] bool isNative() const { return !config_.nodeProgram.empty(); }
+    // Whether all nodes are processes of this machine, connected by shared memory.
+    [[nodiscard]] bool isOneMachine() const;
     trace::About aboutTrace();
     void announceReady();
     std::string placeOwnThreads() const;

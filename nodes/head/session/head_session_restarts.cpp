@@ -153,6 +153,7 @@ StreamBroadcaster::Admission HeadSession::admission(int node, uint32_t view) {
     plans_.nodeJoins(node, view);
     frames_.nodeJoins(node);
     driverEvents_.nodeJoins(node);
+    programs_->memberCame(node, nodes_.link(node).describe());
     const std::lock_guard lock(mutex_);
     views_.joins(node, view);
     admission.incarnation = incarnations_[static_cast<size_t>(node)];
@@ -251,6 +252,7 @@ void HeadSession::goOnWithout(int node) {
     answers_.nodeLost(node);
     plans_.nodeLost(node);
     frames_.nodeLost(node, monotonicNowNs());
+    programs_->memberLost(node);
     std::vector<std::pair<uint32_t, uint32_t>> waiting; // requests that wait for this node
     {
         const std::lock_guard lock(mutex_);

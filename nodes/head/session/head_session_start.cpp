@@ -283,6 +283,8 @@ void HeadSession::openTables() {
     const compound::PixelSize wall = sizeOfWall();
     welcome.width = static_cast<uint32_t>(wall.w);
     welcome.height = static_cast<uint32_t>(wall.h);
+    welcome.multicasts = nodes_.multicast() != nullptr ? 1 : 0;
+    welcome.isOneMachine = isOneMachine() ? 1 : 0;
     if (isNative()) terms.kind = capture::ProgramKind::Native;
     {
         const std::lock_guard lock(mutex_);
@@ -311,7 +313,14 @@ void HeadSession::openTables() {
         recording_.programGone(client);
     };
     programs_ = std::make_unique<ProgramTable>(std::move(terms), nodes_, std::move(events));
+    for (int node = 0; node < nodeCount(); ++node)
+        if (!absences_.contains(node)) programs_->memberCame(node, nodes_.link(node).describe());
     serving_ = true;
+}
+
+bool HeadSession::isOneMachine() const {
+    const auto plan = currentPlan();
+    return std::ranges::all_of(plan->nodes, [](const NodePlan& node) { return node.reach == NodeReach::SharedMemory; });
 }
 
 trace::About HeadSession::aboutTrace() {

@@ -42,6 +42,7 @@ void readGoodbye(const std::string& text, NodeTotals& totals) {
     const Json json = parseJson(text);
     if (!json.is_object()) return;
     totals.commands = wholeOf(json, "commands");
+    totals.receivedBytes = wholeOf(json, "receivedBytes");
     totals.exchangeBytes = wholeOf(json, "exchangeBytes");
     totals.peakMemoryBytes = wholeOf(json, "peakMemoryBytes");
     totals.pictureBytes = wholeOf(json, "pictureBytes");
@@ -158,6 +159,7 @@ Json reportOf(const SessionNumbers& n) {
                          {"replaySeconds", node.replaySeconds},
                          {"readbackSeconds", node.readbackSeconds},
                          {"commands", node.commands},
+                         {"receivedBytes", node.receivedBytes},
                          {"exchangeBytes", node.exchangeBytes},
                          {"pictureBytes", node.pictureBytes},
                          {"pictureRawBytes", node.pictureRawBytes},

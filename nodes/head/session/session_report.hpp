@@ -33,6 +33,7 @@ struct NodeTotals {
     double replaySeconds = 0;    // CPU time of its replay thread: drawing…
     double readbackSeconds = 0;  // …and reading the pictures
     int64_t commands = 0;
+    int64_t receivedBytes = 0;                     // from the head, since its last start
     int64_t exchangeBytes = 0;                     // picture bytes sent to other nodes
     int64_t pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
     SwapTotals swaps;

@@ -7,9 +7,9 @@
 //       template <class Visit> void fields(Visit& visit) { visit(angle, lights); }
 //   };
 //
-// A type must be default-constructible and copyable. A member `template <class A> void serialize(A& archive)` in the
-// form of the library cereal serves as well, and so does a free function `fields(visit, scene)` in the namespace of the
-// type. A type without fields of its own, such as std::vector<float>, counts as one field.
+// A type must be default-constructible and copyable. A member function `serialize(archive)` in the form of the library
+// cereal serves as well, and so does a free function `fields(visit, scene)` in the namespace of the type. A type
+// without fields of its own, such as a vector of numbers, counts as one field.
 //
 // Fields: numbers except long double, enums, bool, std::array, vector, string, optional, variant, map and pair,
 // geometry types, Blob, Ref, and structures of these.

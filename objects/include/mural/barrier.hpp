@@ -14,6 +14,7 @@ class Barrier {
 public:
     // Used by the session; objects/ends/barrier_ends.hpp.
     class Member;
+    // Used by the session.
     explicit Barrier(std::shared_ptr<Member> member) : member_(std::move(member)) {}
 
     // Waits until all members have entered, and returns their number. Lost members are not waited for. Errors: the

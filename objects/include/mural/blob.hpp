@@ -38,9 +38,10 @@ public:
     // file is missing or not readable, or its size changes during the call.
     static Result<Blob> mapFile(const std::string& path);
 
+    // Returns the contents; valid as long as a copy of the blob exists.
     [[nodiscard]] std::span<const std::byte> bytes() const;
-    [[nodiscard]] size_t sizeBytes() const { return bytes().size(); }
-    [[nodiscard]] bool empty() const { return bytes().empty(); }
+    [[nodiscard]] size_t sizeBytes() const { return bytes().size(); } // of the contents
+    [[nodiscard]] bool empty() const { return bytes().empty(); }      // whether there are no contents
 
     // Returns the contents as elements of a trivially copyable type. A rest smaller than one element is left out.
     // Requires the alignment of T from the contents' start, which is at least 16.
@@ -50,12 +51,15 @@ public:
         return {reinterpret_cast<const T*>(bytes().data()), bytes().size() / sizeof(T)};
     }
 
-    [[nodiscard]] const BlobName& name() const;
+    [[nodiscard]] const BlobName& name() const; // of the contents
+    // Whether the contents are equal; compares the names.
     friend bool operator==(const Blob& a, const Blob& b) { return a.name() == b.name(); }
 
     // Internal: the memory behind a blob (objects/blob/blob_memory.hpp).
     struct Memory;
+    // Internal.
     explicit Blob(std::shared_ptr<const Memory> memory) : memory_(std::move(memory)) {}
+    // Internal.
     [[nodiscard]] const std::shared_ptr<const Memory>& memory() const { return memory_; }
 
 private:

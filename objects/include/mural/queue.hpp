@@ -34,6 +34,7 @@ public:
 // The adding end. Thread safety: any thread.
 template <class T> class QueueMaster {
 public:
+    // Used by the session.
     explicit QueueMaster(std::shared_ptr<AnyQueueMaster> queue) : queue_(std::move(queue)) {}
 
     // Appends an item. `frame`: the frame that it belongs to, 0 for none. Errors: the queue is closed; the item
@@ -61,6 +62,7 @@ private:
 // A reading end. Requests items ahead of their use. Thread safety: one thread at a time.
 template <class T> class QueueReader {
 public:
+    // Used by the session.
     explicit QueueReader(std::shared_ptr<AnyQueueReader> queue) : queue_(std::move(queue)) {}
 
     // Returns the next item, and reports the one before as finished. Waits for an item. Empty: the queue is closed and

@@ -19,14 +19,18 @@ template <class T> using Snapshot = std::shared_ptr<const T>;
 
 // Names one version of an object of any type.
 struct AnyRef {
-    Uuid id{}; // all zero: refers to nothing
-    Version version = 0;
+    Uuid id{};           // all zero: refers to nothing
+    Version version = 0; // 0: the newest
 
-    [[nodiscard]] bool isNull() const { return id == Uuid{}; }
+    [[nodiscard]] bool isNull() const { return id == Uuid{}; } // whether it refers to nothing
+    // Whether both name the same version of the same object.
     friend bool operator==(const AnyRef&, const AnyRef&) = default;
 };
 
 // Names one version of an object of type T. Travels inside other objects in place of a pointer.
-template <class T> struct Ref : AnyRef { friend bool operator==(const Ref&, const Ref&) = default; };
+template <class T> struct Ref : AnyRef {
+    // Whether both name the same version of the same object.
+    friend bool operator==(const Ref&, const Ref&) = default;
+};
 
 } // namespace mural

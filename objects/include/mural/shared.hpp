@@ -32,10 +32,12 @@ EncodedSlots& scratchSlots();
 // Thread safety: one thread at a time per object; different objects are independent.
 template <class T> class Shared {
 public:
+    // Used by the session.
     Shared(std::unique_ptr<SharedObject> object, T value) : object_(std::move(object)), value_(std::move(value)) {}
 
     // Returns the copy for changes. The reference stays valid as long as this Shared is not moved.
     [[nodiscard]] T& edit() { return value_; }
+    // Returns the copy.
     [[nodiscard]] const T& get() const { return value_; }
 
     // Makes the next commit send all fields.

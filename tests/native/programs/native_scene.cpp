@@ -1,16 +1,22 @@
 // A program with the native API for tests. Its picture depends on the state of the frame, on depth, and on objects that
 // nodes request.
 //
-//   native_scene [--frames N] [--fault NAME]
+//   native_scene [--frames N] [--fault NAME] [--work NAME] [--chunk-bytes N]
+//
+// Work: queue (nodes take the parts of the scene from a queue of the frame, and ignore their ranges), barrier (nodes
+// and application enter a barrier in every frame; the application prints how many entered).
 //
 // Faults: throw (in draw), start (Renderer::start fails), gl (a GL error), range (ignores its range), layout (the state
 // has another type than the renderer expects), still (draws one frame, and then waits).
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -32,9 +38,9 @@ struct Chunk {
 
 struct Scene {
     double angle = 0;
-    std::string fault;
+    std::string fault, work;
     std::vector<mural::Ref<Chunk>> chunks;
-    template <class Visit> void fields(Visit& visit) { visit(angle, fault, chunks); }
+    template <class Visit> void fields(Visit& visit) { visit(angle, fault, work, chunks); }
 };
 
 // The same name with another layout.
@@ -42,6 +48,14 @@ struct OtherScene {
     float angle = 0;
     template <class Visit> void fields(Visit& visit) { visit(angle); }
 };
+
+// A work item: the number of a part of the scene.
+struct Item {
+    uint32_t chunk = 0;
+    template <class Visit> void fields(Visit& visit) { visit(chunk); }
+};
+
+std::string queueOf(uint64_t frame) { return "frame " + std::to_string(frame); }
 
 // Triangles that intersect those of all other chunks.
 std::vector<Vertex> verticesOf(int chunk) {
@@ -61,11 +75,17 @@ class Turning : public mural::Application {
         for (int i = 1; i + 1 < argc; i += 2) {
             if (std::strcmp(argv[i], "--frames") == 0) frames_ = std::strtoull(argv[i + 1], nullptr, 10);
             if (std::strcmp(argv[i], "--fault") == 0) fault_ = argv[i + 1];
+            if (std::strcmp(argv[i], "--work") == 0) work_ = argv[i + 1];
+            if (std::strcmp(argv[i], "--chunk-bytes") == 0) chunkBytes_ = std::strtoull(argv[i + 1], nullptr, 10);
         }
+        if (work_ == "barrier") barrier_.emplace(session.barrier("draw"));
         mural::ShareOptions options;
         options.delivery = mural::Delivery::OnDemand;
         for (int i = 0; i < kChunks; ++i) {
-            const auto vertices = verticesOf(i);
+            auto vertices = verticesOf(i);
+            // More bytes of an invisible triangle, which differ from part to part.
+            const Vertex hidden{static_cast<float>(i), 0, 0, 0, 0, 0};
+            vertices.resize(std::max(vertices.size(), chunkBytes_ / sizeof(Vertex) / 3 * 3), hidden);
             auto blob = mural::Blob::copyOf(std::as_bytes(std::span(vertices)));
             if (!blob) return blob.error();
             auto chunk = session.share(Chunk{*blob}, options);
@@ -76,6 +96,7 @@ class Turning : public mural::Application {
         return {};
     }
     mural::Next update(mural::Session& session, const mural::FrameClock& clock) override {
+        if (barrier_ && clock.frame > 1) enterBarrier();
         if (frames_ > 0 && clock.frame > frames_) return mural::Next::End;
         if (fault_ == "still" && clock.frame > 1) return mural::Next::Wait;
         if (fault_ == "layout") {
@@ -85,14 +106,32 @@ class Turning : public mural::Application {
         Scene& scene = session.state<Scene>();
         scene.angle = 0.05 * static_cast<double>(clock.frame);
         scene.fault = fault_;
+        scene.work = work_;
         if (scene.chunks.empty())
             for (const auto& chunk : chunks_) scene.chunks.push_back(chunk.ref());
+        if (work_ == "queue") addWork(session, clock.frame);
         return mural::Next::Frame;
+    }
+    void addWork(mural::Session& session, uint64_t frame) {
+        if (frame == workFrame_) return; // the frame was not sent yet
+        workFrame_ = frame;
+        auto queue = session.queue<Item>(queueOf(frame));
+        for (uint32_t i = 0; i < kChunks; ++i)
+            if (auto added = queue.push({i}, frame); !added) throw std::runtime_error(added.error().message);
+        queue.close();
+    }
+    void enterBarrier() {
+        auto entered = barrier_->enter(mural::Deadline::inMs(20'000));
+        if (!entered) throw std::runtime_error(entered.error().message);
+        std::printf("entered %u\n", *entered);
+        std::fflush(stdout);
     }
     void end(mural::Session&) override { chunks_.clear(); }
 
-    uint64_t frames_ = 0;
-    std::string fault_;
+    uint64_t frames_ = 0, workFrame_ = 0;
+    size_t chunkBytes_ = 0;
+    std::string fault_, work_;
+    std::optional<mural::Barrier> barrier_;
     std::vector<mural::Shared<Chunk>> chunks_;
 };
 
@@ -136,9 +175,23 @@ class Triangles : public mural::Renderer {
         glUniformMatrix4fv(glGetUniformLocation(program_, "clip"), 1, GL_FALSE, clip.data());
         glBindVertexArray(array_);
         glBindBuffer(GL_ARRAY_BUFFER, buffer_);
+        if (scene.work == "barrier") {
+            auto entered = task.barrier("draw").enter(mural::Deadline::inMs(20'000));
+            if (!entered) throw std::runtime_error(entered.error().message);
+        }
+        if (scene.work == "queue") return drawWork(task, scene);
         const mural::Range range = scene.fault == "range" ? mural::Range{} : task.context().range;
         const auto [first, end] = mural::itemsOf(range, scene.chunks.size());
         for (uint64_t i = first; i < end; ++i) drawChunk(task, scene.chunks[i]);
+    }
+    void drawWork(mural::RenderTask& task, const Scene& scene) {
+        auto queue = task.queue<Item>(queueOf(task.frame().number));
+        while (true) {
+            auto item = queue.pop(mural::Deadline::inMs(20'000));
+            if (!item) throw std::runtime_error(item.error().message);
+            if (!*item) return;
+            drawChunk(task, scene.chunks.at((*item)->chunk));
+        }
     }
     void drawChunk(mural::RenderTask& task, const mural::Ref<Chunk>& ref) {
         auto chunk = task.objects().get(ref);
