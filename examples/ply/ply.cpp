@@ -67,10 +67,17 @@ Result<Options> parseOptions(int argc, char** argv) {
 
 // The application: reads the mesh, publishes its leaves, and turns it.
 class Viewer : public Application {
-    Result<void> start(Session& session, int argc, char** argv) override {
+    Result<Next> parse(int argc, char** argv) override {
+        if (isHelpWanted(argc, argv)) {
+            std::fputs(kHelp, stdout);
+            return Next::End;
+        }
         Result<Options> options = parseOptions(argc, argv);
         if (!options) return options.error();
         options_ = *options;
+        return Next::Frame;
+    }
+    Result<void> start(Session& session, int, char**) override {
         const Result<Mesh> mesh = readMesh(options_.file);
         if (!mesh) return mesh.error();
         return publish(session, mesh.value());
@@ -296,6 +303,5 @@ class MeshRenderer : public Renderer {
 } // namespace mural::examples
 
 int main(int argc, char** argv) {
-    if (mural::examples::isHelpWanted(argc, argv)) return std::fputs(mural::examples::kHelp, stdout) < 0;
     return mural::run<mural::examples::Viewer, mural::examples::MeshRenderer>(argc, argv);
 }

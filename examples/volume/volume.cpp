@@ -97,10 +97,17 @@ Result<Options> parseOptions(int argc, char** argv) {
 
 // The application: reads the volume, publishes its bricks, and turns it.
 class Viewer : public Application {
-    Result<void> start(Session& session, int argc, char** argv) override {
+    Result<Next> parse(int argc, char** argv) override {
+        if (isHelpWanted(argc, argv)) {
+            std::fputs(kHelp, stdout);
+            return Next::End;
+        }
         Result<Options> options = parseOptions(argc, argv);
         if (!options) return options.error();
         options_ = *options;
+        return Next::Frame;
+    }
+    Result<void> start(Session& session, int, char**) override {
         Result<Volume> volume = options_.raw ? readRawVolume(options_.file, *options_.raw, options_.wish)
                                              : readVolume(options_.file, options_.wish);
         if (!volume) return volume.error();
@@ -414,6 +421,5 @@ class VolumeRenderer : public Renderer {
 } // namespace mural::examples
 
 int main(int argc, char** argv) {
-    if (mural::examples::isHelpWanted(argc, argv)) return std::fputs(mural::examples::kHelp, stdout) < 0;
     return mural::run<mural::examples::Viewer, mural::examples::VolumeRenderer>(argc, argv);
 }

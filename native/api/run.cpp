@@ -66,21 +66,36 @@ template <class Function> Result<void> guarded(Function&& function) {
 int run(int argc, char** argv, const Program& program) {
     const char* const name = argc > 0 ? argv[0] : "mural";
     if (const auto status = native::runNodeIfRequested(argc, argv, program)) return *status;
-    auto session = Session::open(argc, argv, program);
-    if (!session) {
-        complain(name, session.error().message);
-        return kNoSession;
-    }
+    std::unique_ptr<Session> joined; // outlives the application and its objects
     std::unique_ptr<Application> application;
-    auto ran = guarded([&]() -> Result<void> {
+    Next next = Next::Frame;
+    const auto parsed = guarded([&]() -> Result<void> {
         application = program.application ? program.application() : nullptr;
         if (!application) return Error{"the program makes no Application; set Program::application"};
-        auto started = application->start(**session, argc, argv);
-        return started ? drawFrames(**session, *application, name) : started;
+        auto read = application->parse(argc, argv);
+        if (!read) return read.error();
+        next = *read;
+        return {};
+    });
+    if (!parsed) {
+        complain(name, parsed.error().message);
+        return kFailed;
+    }
+    if (next == Next::End) return 0;
+    auto opened = Session::open(argc, argv, program);
+    if (!opened) {
+        complain(name, opened.error().message);
+        return kNoSession;
+    }
+    joined = std::move(*opened);
+    Session* const session = joined.get();
+    auto ran = guarded([&]() -> Result<void> {
+        auto started = application->start(*session, argc, argv);
+        return started ? drawFrames(*session, *application, name) : started;
     });
     if (!ran) complain(name, ran.error().message);
     const auto ended = guarded([&] {
-        if (application) application->end(**session);
+        if (application) application->end(*session);
         return Result<void>();
     });
     if (!ended) complain(name, ended.error().message);

@@ -9,6 +9,7 @@ import math
 import os
 import re
 import struct
+import subprocess
 import sys
 import tempfile
 
@@ -159,6 +160,21 @@ def slabs_blend(context):
             if difference.largest > 3 or quality < 54:
                 return "%s: largest difference %d, %s, %.1f dB" % (options, difference.largest, difference.place, quality)
         return None
+
+
+@cases.case
+def help_starts_no_session(context):
+    """Without `mural` in PATH no session could start."""
+    for name in ("ply", "volume"):
+        for words, status, text in ((["--help"], 0, "mural run"), (["--fast", "a"], 1, "there is no option --fast")):
+            done = subprocess.run([os.path.join(context.build, "bin", name)] + words, env={"PATH": "/nonexistent"},
+                                  capture_output=True, text=True, timeout=60, check=False)
+            if done.returncode != status or text not in done.stdout + done.stderr:
+                return "%s %s: status %d, %s" % (name, words, done.returncode, done.stdout + done.stderr)
+        wrong, _, lines = draw(context, "--tiles 1x1", [name, "--help"])
+        if wrong or any("native API" in line for line in lines):
+            return "mural run -- %s --help: %s; %s" % (name, wrong, " | ".join(lines))
+    return None
 
 
 @cases.case
