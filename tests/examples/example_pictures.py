@@ -171,9 +171,6 @@ def help_starts_no_session(context):
                                   capture_output=True, text=True, timeout=60, check=False)
             if done.returncode != status or text not in done.stdout + done.stderr:
                 return "%s %s: status %d, %s" % (name, words, done.returncode, done.stdout + done.stderr)
-        wrong, _, lines = draw(context, "--tiles 1x1", [name, "--help"])
-        if wrong or any("native API" in line for line in lines):
-            return "mural run -- %s --help: %s; %s" % (name, wrong, " | ".join(lines))
     return None
 
 

@@ -98,6 +98,62 @@ def passes_show_something_else(context):
 
 
 @cases.case
+def passes_are_exact(context):
+    """Stereo, samples and kernels show the same pixels however their nodes divide the work."""
+    for passes in ("--stereo anaglyph", "--subpixel 2", "--pixel 2x1"):
+        wrong, wanted, lines = draw(context, passes)
+        for options in ("--tiles 2x1", "--db 2"):
+            if not wrong:
+                wrong, shown, lines = draw(context, passes + " " + options)
+                wrong = wrong or differing(wanted, shown)
+            if wrong:
+                return "%s %s: %s; %s" % (passes, options, wrong, " | ".join(lines[-3:]))
+    return None
+
+
+# Two nodes share the scene on the front wall of the room of configs/cave.eqc.
+SHARED_WALL = """        compound { channel ( segment 0 ) }
+        compound
+        {
+            channel ( segment 1 )
+            buffer [ COLOR DEPTH ]
+            compound { range [ 0 .5 ] }
+            compound { channel "helper" range [ .5 1 ] outputframe { } }
+            inputframe { name "frame.helper" }
+        }
+        compound { channel ( segment 2 ) }
+"""
+HELPER = """        node { host "cave4" pipe { window { viewport [ 0 0 320 240 ] attributes { hint_drawable FBO } channel { name "helper" } } } }
+"""
+
+
+@cases.case
+def rooms_are_exact(context):
+    """A CAVE file: each wall shows what is behind it, and nodes that share a wall show the same pixels."""
+    path = os.path.join(TOP, "configs", "cave.eqc")
+    with open(path, encoding="ascii") as file:
+        text = file.read()
+    with tempfile.TemporaryDirectory(prefix="mural-native.") as folder:
+        shared = os.path.join(folder, "shared.eqc")
+        end = text.rindex("    }\n}")
+        with open(shared, "w", encoding="ascii") as file:
+            file.write(text[:end].replace("        observer { }", HELPER + "        observer { }") + SHARED_WALL + text[end:])
+        shown = []
+        for name in (path, shared):
+            wrong, found, lines = draw(context, "--config %s --all-local" % name, words=["--work", "room"])
+            if wrong or len(found) != FRAMES:
+                return "%s: %s, %d pictures; %s" % (name, wrong, len(found), " | ".join(lines[-3:]))
+            shown.append(found)
+    wrong = differing(*shown)
+    if wrong:
+        return wrong
+    rows = [bytes(row) for row in shown[0][0].rows]
+    wall = len(rows[0]) // 3
+    drawn = [sum(row[first * wall + k] != 0 for row in rows for k in range(0, wall, 4)) for first in range(3)]
+    return None if min(drawn) > 1000 else "the walls show %s pixels" % drawn
+
+
+@cases.case
 def ignored_ranges_are_found(context):
     """The planted fault of this test: a renderer that draws everything has the right picture, and one that draws the
     wrong range has not."""

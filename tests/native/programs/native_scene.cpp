@@ -4,7 +4,8 @@
 //   native_scene [--frames N] [--fault NAME] [--work NAME] [--chunk-bytes N]
 //
 // Work: queue (nodes take the parts of the scene from a queue of the frame, and ignore their ranges), barrier (nodes
-// and application enter a barrier in every frame; the application prints how many entered).
+// and application enter a barrier in every frame; the application prints how many entered), room (the scene surrounds
+// the observer).
 //
 // Faults: throw (in draw), start (Renderer::start fails), gl (a GL error), range (ignores its range), layout (the state
 // has another type than the renderer expects), still (draws one frame, and then waits).
@@ -163,11 +164,11 @@ class Triangles : public mural::Renderer {
     void draw(mural::RenderTask& task) override {
         const Scene& scene = task.state<Scene>();
         if (scene.fault == "throw" && task.frame().number == 2) throw std::runtime_error("thrown on purpose");
-        task.setNearFar(.5, 20);
+        task.setNearFar(scene.work == "room" ? .05 : .5, 20);
         task.apply();
         if (scene.fault == "gl") glEnable(0xffff);
         const double s = std::sin(scene.angle), c = std::cos(scene.angle);
-        mural::Matrix4 model = mural::Matrix4::translation({0, 0, -5});
+        mural::Matrix4 model = mural::Matrix4::translation({0, 0, scene.work == "room" ? 0. : -5.});
         model = model * mural::Matrix4::rows({c, 0, s}, {0, 1, 0}, {-s, 0, c});
         const auto clip = mural::glMatrix(task.projection() * task.toEye() * model);
         glEnable(GL_DEPTH_TEST);
