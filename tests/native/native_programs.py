@@ -233,9 +233,12 @@ def barriers_release_nodes_and_application_together(context):
 
 @cases.case
 def nodes_receive_the_objects_that_they_ask_for(context):
-    """Each of four nodes draws a quarter of 24 objects of 300 KB, and receives a quarter of the bytes."""
+    """Each of four nodes draws a quarter of 24 objects of 300 KB, and receives a quarter of the bytes; also beside a stream
+    by multicast, and between batches of delta coding."""
     whole = 24 * 300000
-    for options in ("--db 4", "--db 4 --delta on"):
+    far = " --nodes localhost,localhost --stream "
+    for options, nodes in (("--db 4", 4), ("--db 4 --delta on", 4), ("--db 2" + far + "tcp", 2),
+                           ("--db 2" + far + "rsp://239.255.77.13:4379?interface=127.0.0.1", 2)):
         with tempfile.TemporaryDirectory(prefix="mural-native.") as folder:
             report = os.path.join(folder, "report.json")
             wrong, shown, lines = draw(context, options + " --report " + report, words=["--chunk-bytes", "300000"],
@@ -246,7 +249,7 @@ def nodes_receive_the_objects_that_they_ask_for(context):
             with open(report, encoding="utf-8") as file:
                 received = [node["receivedBytes"] for node in json.load(file)["nodes"]]
         print("%s: bytes received per node %s of %d" % (options, received, whole))
-        if len(received) != 4 or not all(.23 * whole < count < .30 * whole for count in received):
+        if len(received) != nodes or not all(.98 * whole < count * nodes < 1.1 * whole for count in received):
             return "%s: the nodes receive %s bytes of %d" % (options, received, whole)
     return None
 
