@@ -247,6 +247,47 @@ def refused_changes(context):
 
 
 @cases.case
+def reverting_change(context):
+    """A change reverts by itself, stays when it is kept, and blocks others until then."""
+    with Drawing(context, ["--tiles", "2x1", "--display", "none", "--verify"]) as drawing:
+        run = drawing.run
+        if not drawing.begins():
+            return "no frames"
+        before = nodes_of(context, run)
+        status, reply, errors = change(context, run, "--db", "2", "--revert-after", "60")
+        if status != 0 or reply["revertsInSeconds"] != 60:
+            return "status %d, %s %s" % (status, reply, errors)
+        left = result_of(context, run, "status")["revertsInSeconds"]
+        if not 0 < left <= 60:
+            return "%s s left" % left
+        status, _, errors = change(context, run, "--tiles", "1x2")
+        if status != 1 or "mural ctl keep" not in errors:
+            return "another change: status %d, %s" % (status, errors)
+        if "error" in result_of(context, run, "keep") or result_of(context, run, "status")["revertsInSeconds"] is not None:
+            return "the change is not kept"
+        status, _, errors = ctl(context, str(run.process.pid), "keep")
+        if status != 1 or "no change" not in errors:
+            return "second keep: status %d, %s" % (status, errors)
+        kept = nodes_of(context, run)
+        status, _, errors = change(context, run, "--tiles", "1x2", "--revert-after", "1")
+        if status != 0:
+            return "status %d, %s" % (status, errors)
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while time.monotonic() < deadline and "reverted" not in " ".join(run.standard_error):
+            time.sleep(0.05)
+        options_now = result_of(context, run, "plan")["options"]
+        if options_now["ranges"] != 2 or kept == before:
+            return "the options are %s" % options_now
+        status, _, errors = ctl(context, str(run.process.pid), "layout", "wall", "2D", "0")
+        if status != 1 or errors.count("\n") != 1:
+            return "without canvases: status %d, %s" % (status, errors)
+        status, _, errors = ctl(context, str(run.process.pid), "plan", "{}", "4000")
+        if status != 1 or "3600" not in errors:
+            return "4000 s: status %d, %s" % (status, errors)
+        return drawing.finish()
+
+
+@cases.case
 def failing_nodes(context):
     """A new node that does not start leaves everything as it was. A later change succeeds."""
     launch = os.path.join(TOP, "nowhere")

@@ -110,6 +110,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
 
 HeadSession::~HeadSession() {
     tearingDown_ = finishing_ = true;
+    provisional_.end();
     if (spareMove_.joinable()) spareMove_.join();
     if (redrawing_.joinable()) redrawing_.join();
     controlServer_.reset();
@@ -362,6 +363,7 @@ void HeadSession::nodeLost(int node, const std::string& why) {
 
 void HeadSession::finish() {
     finishing_ = true;
+    provisional_.end();
     if (spareMove_.joinable()) spareMove_.join();
     log::debug(log::Topic::Session, "the session ends: drains programs, nodes and outputs");
     returns_->stop([this] { watchNodes(monotonicNowNs()); });
@@ -455,6 +457,7 @@ SessionStatus HeadSession::status() {
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.latency = programs_->latency();
+    if (const auto left = provisional_.left()) result.revertsInSeconds = std::chrono::duration<double>(*left).count();
     result.recording = recording_.status();
     result.delta = nodes_.deltaCounts();
     result.equalizers = stage->balancer.totals();

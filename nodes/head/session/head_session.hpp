@@ -26,6 +26,7 @@
 #include "nodes/head/control/control_server.hpp"
 #include "nodes/head/session/control_channel.hpp"
 #include "nodes/head/session/plan_sequence.hpp"
+#include "nodes/head/session/provisional_change.hpp"
 #include "nodes/head/frames/credit_pacer.hpp"
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
@@ -172,11 +173,19 @@ private:
     Result<nlohmann::json> stopRecording();
     // Changes of the plan (head_session_plans.cpp).
     void addPlanOperations(ControlOperations& operations);
-    Result<nlohmann::json> moveNodes(const std::string& from, const std::string& to, bool isDryRun);
+    struct ChangeTerms {
+        bool isDryRun = false;
+        int64_t revertAfterSeconds = 0; // 0: the change stays
+        bool isReversion = false;       // of a provisional change
+    };
+    static Result<ChangeTerms> termsOf(const nlohmann::json& arguments);
+    Result<nlohmann::json> moveNodes(const std::string& from, const std::string& to, ChangeTerms terms);
     void takeSpareFor(int node);
-    Result<nlohmann::json> undoChange(bool isDryRun);
+    Result<nlohmann::json> undoChange(ChangeTerms terms);
     Result<nlohmann::json> changeLayout(const nlohmann::json& arguments);
-    Result<nlohmann::json> changePlan(SessionConfig config, bool isDryRun);
+    Result<nlohmann::json> changePlan(SessionConfig config, ChangeTerms terms);
+    Result<nlohmann::json> keepChange();
+    void revertChange();
     Result<void> canTakeNodes(size_t members);
     Result<void> carryOut(SessionConfig config, PlanChange change);
     void beginPlanChange();
@@ -309,7 +318,8 @@ private:
     std::atomic<bool> checksForNodes_{false}; // tick() checks whether any node is left
     std::mutex changing_;                     // held during a change of the plan
     std::shared_ptr<PendingChange> pending_;  // guarded by mutex_; for the session's thread to begin
-    std::deque<SessionConfig> history_;       // guarded by mutex_; configurations before the changes, the latest last
+    ProvisionalChange provisional_{[this] { revertChange(); }};
+    std::deque<SessionConfig> history_;   // guarded by mutex_; configurations before the changes, the latest last
     std::set<int> newNodes_;              // guarded by mutex_; come with a change of the plan, and were no members yet
     std::map<int, int64_t> leavingSince_; // guarded by mutex_; nodes of earlier plans, since their Leave
     const std::map<int, std::string> absences_; // nodes absent at the start, with the reason

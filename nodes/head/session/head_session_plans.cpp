@@ -33,7 +33,17 @@ constexpr int64_t kProcessEndMs = 500;    // from its Goodbye to the end of its 
 constexpr int kSpareAttempts = 6;
 constexpr int64_t kSparePauseMs = 5'000; // between two attempts
 constexpr size_t kMaxHistory = 16;
+constexpr int64_t kMostRevertSeconds = 3600;
+constexpr int kRevertAttempts = 6;
+constexpr int64_t kRevertPauseMs = 5'000; // between two attempts
+constexpr const char* kRevertAfter = "revert-after";
 constexpr const char* kOff = "off";
+
+std::vector<ControlArgument> withTerms(std::vector<ControlArgument> arguments) {
+    arguments.push_back({"dry-run", Kind::Truth, false, "only report the nodes that would start and end"});
+    arguments.push_back({kRevertAfter, Kind::Whole, false, "seconds after which the change reverts, unless kept"});
+    return arguments;
+}
 
 std::string nameOf(const std::string& name, size_t index) { return name.empty() ? std::to_string(index) : name; }
 
@@ -68,44 +78,78 @@ Json canvasesJson(const BalancePlan& plan) {
 } // namespace
 
 void HeadSession::addPlanOperations(ControlOperations& operations) {
-    operations.add({"layout",
-                    "layout [CANVAS] [LAYOUT] [dry-run]",
+    operations.add({"layout", "layout [CANVAS] [LAYOUT] [dry-run] [REVERT-AFTER]",
                     "show another layout on a canvas, or turn it off; without arguments: list the layouts",
-                    {{"canvas", Kind::Text, false, "name of the canvas"},
-                     {"layout", Kind::Text, false, "name of the layout, or off"},
-                     {"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
+                    withTerms({{"canvas", Kind::Text, false, "name of the canvas"},
+                               {"layout", Kind::Text, false, "name of the layout, or off"}}),
                     [this](const Json& arguments) { return changeLayout(arguments); }});
-    operations.add({"plan",
-                    "plan [OPTIONS] [dry-run]",
+    operations.add({"plan", "plan [OPTIONS] [dry-run] [REVERT-AFTER]",
                     "divide the work in another way, see mural change; without arguments: the current options",
-                    {{"options", Kind::Object, false, "fields of the plan"},
-                     {"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
+                    withTerms({{"options", Kind::Object, false, "fields of the plan"}}),
                     [this](const Json& arguments) -> Result<Json> {
                         const auto options = arguments.find("options");
                         if (options == arguments.end())
                             return Json{{"options", planFieldsOf(plans_.current()->config)}};
                         auto config = withPlanFields(plans_.current()->config, *options);
                         if (!config) return config.error();
-                        return changePlan(std::move(*config), arguments.value("dry-run", false));
+                        auto terms = termsOf(arguments);
+                        if (!terms) return terms.error();
+                        return changePlan(std::move(*config), *terms);
                     }});
-    operations.add({"move-nodes",
-                    "move-nodes FROM TO [dry-run]",
-                    "run the nodes of a host on another one",
-                    {{"from", Kind::Text, true, "host, as mural ctl nodes shows it"},
-                     {"to", Kind::Text, true, "host that takes over its nodes"},
-                     {"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
-                    [this](const Json& arguments) {
-                        return moveNodes(arguments.at("from").get<std::string>(), arguments.at("to").get<std::string>(),
-                                         arguments.value("dry-run", false));
+    operations.add(
+        {"move-nodes", "move-nodes FROM TO [dry-run] [REVERT-AFTER]", "run the nodes of a host on another one",
+         withTerms({{"from", Kind::Text, true, "host, as mural ctl nodes shows it"},
+                    {"to", Kind::Text, true, "host that takes over its nodes"}}),
+         [this](const Json& arguments) -> Result<Json> {
+             auto terms = termsOf(arguments);
+             if (!terms) return terms.error();
+             return moveNodes(arguments.at("from").get<std::string>(), arguments.at("to").get<std::string>(), *terms);
+         }});
+    operations.add({"keep", "", "keep the last change, which would otherwise revert", {}, [this](const Json&) {
+                        return keepChange();
                     }});
     operations.add({"undo",
                     "undo [dry-run]",
                     "return to the plan before the last change",
                     {{"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
-                    [this](const Json& arguments) { return undoChange(arguments.value("dry-run", false)); }});
+                    [this](const Json& arguments) { return undoChange({arguments.value("dry-run", false)}); }});
 }
 
-Result<Json> HeadSession::moveNodes(const std::string& from, const std::string& to, bool isDryRun) {
+Result<HeadSession::ChangeTerms> HeadSession::termsOf(const Json& arguments) {
+    ChangeTerms terms;
+    terms.isDryRun = arguments.value("dry-run", false);
+    if (const auto after = arguments.find(kRevertAfter); after != arguments.end()) {
+        terms.revertAfterSeconds = after->get<int64_t>();
+        if (terms.revertAfterSeconds < 1 || terms.revertAfterSeconds > kMostRevertSeconds)
+            return Error{"a change reverts after 1 to " + std::to_string(kMostRevertSeconds) + " s, not " +
+                         std::to_string(terms.revertAfterSeconds)};
+    }
+    return terms;
+}
+
+Result<Json> HeadSession::keepChange() {
+    if (!provisional_.keep()) return Error{"no change is about to revert"};
+    log::info(log::Topic::Session, "the last change stays at the request of mural ctl keep");
+    return Json::object();
+}
+
+// Called by the thread of provisional_.
+void HeadSession::revertChange() {
+    const ChangeTerms terms{false, 0, true};
+    Result<Json> reverted = undoChange(terms);
+    for (int attempt = 1; !reverted && attempt < kRevertAttempts && !finishing_; ++attempt) {
+        for (const Deadline pause = Deadline::inMs(kRevertPauseMs); !pause.passed() && !finishing_;)
+            poll(nullptr, 0, 20);
+        if (!finishing_) reverted = undoChange(terms); // another change or the restart of a node was in progress
+    }
+    if (finishing_) return;
+    if (reverted)
+        log::info(log::Topic::Session, "the last change has been reverted, because nobody has kept it");
+    else
+        log::warning(log::Topic::Session, "the last change cannot be reverted: ", reverted.error().message);
+}
+
+Result<Json> HeadSession::moveNodes(const std::string& from, const std::string& to, ChangeTerms terms) {
     const auto stage = plans_.current();
     const bool isKnown = from != "local" && std::ranges::any_of(stage->plan.nodes, [&](const NodePlan& node) {
                              return !node.isVacant && node.where == from;
@@ -115,7 +159,7 @@ Result<Json> HeadSession::moveNodes(const std::string& from, const std::string& 
         return Error{"\"" + to + "\" is no name of a host"};
     SessionConfig config = stage->config;
     config.movedHosts.push_back(from + "=" + to);
-    return changePlan(std::move(config), isDryRun);
+    return changePlan(std::move(config), terms);
 }
 
 // Called by the session's thread when a node stays lost. The move runs in a thread of its own, because it waits for
@@ -135,12 +179,12 @@ void HeadSession::takeSpareFor(int node) {
     log::info(log::Topic::Node, "the spare host ", to, " takes over the nodes of ", from);
     isMovingToSpare_ = true;
     spareMove_ = std::thread([this, from, to, node] {
-        auto moved = moveNodes(from, to, false);
+        auto moved = moveNodes(from, to, {});
         for (int attempt = 1; !moved && attempt < kSpareAttempts && !finishing_; ++attempt) {
             // other nodes of the host may be in their restarts, or another change may be in progress
             for (const Deadline pause = Deadline::inMs(kSparePauseMs); !pause.passed() && !finishing_;)
                 poll(nullptr, 0, 20);
-            if (!finishing_) moved = moveNodes(from, to, false);
+            if (!finishing_) moved = moveNodes(from, to, {});
         }
         if (!moved && !finishing_)
             log::warning(log::Topic::Node, "the spare host ", to, " cannot take over the nodes of ", from, ": ",
@@ -151,15 +195,16 @@ void HeadSession::takeSpareFor(int node) {
     });
 }
 
-Result<Json> HeadSession::undoChange(bool isDryRun) {
+Result<Json> HeadSession::undoChange(ChangeTerms terms) {
     std::optional<SessionConfig> before;
     {
         const std::lock_guard lock(mutex_);
         if (!history_.empty()) before = history_.back();
     }
     if (!before) return Error{"no change has happened that can be undone"};
-    auto done = changePlan(std::move(*before), isDryRun);
-    if (!done || isDryRun) return done;
+    if (!terms.isDryRun) provisional_.keep(); // the undo is its reversion
+    auto done = changePlan(std::move(*before), terms);
+    if (!done || terms.isDryRun) return done;
     const std::lock_guard lock(mutex_);
     for (int i = 0; i < 2 && !history_.empty(); ++i) history_.pop_back(); // the change, and its undo
     return done;
@@ -176,16 +221,23 @@ Result<Json> HeadSession::changeLayout(const Json& arguments) {
     SessionConfig config = stage->config;
     std::erase_if(config.layouts, [&](const std::string& other) { return other.starts_with(canvas + ":"); });
     config.layouts.push_back(canvas + ":" + layout);
-    return changePlan(std::move(config), arguments.value("dry-run", false));
+    auto terms = termsOf(arguments);
+    if (!terms) return terms.error();
+    return changePlan(std::move(config), *terms);
 }
 
 // Prepares a change and carries it out. Errors: nothing has changed.
-Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
+Result<Json> HeadSession::changePlan(SessionConfig config, ChangeTerms terms) {
     const int64_t beganNs = monotonicNowNs();
     if (const auto possible = checkVerification(config); !possible) return possible.error();
     const std::unique_lock changing(changing_, std::try_to_lock);
     if (!changing.owns_lock()) return Error{"another change is in progress; try again"};
     if (finishing_) return Error{"the session is ending"};
+    if (const auto left = provisional_.left(); left && !terms.isDryRun && !terms.isReversion) {
+        if (left->count() == 0) return Error{"the last change is being reverted; try again"};
+        return Error{"the last change reverts in " + std::to_string((left->count() + 999) / 1000) +
+                     " s; first run mural ctl keep, or mural ctl undo"};
+    }
     const Deadline settled = Deadline::inMs(kSettleMs);
     while (!plans_.isSettled() && !settled.passed()) poll(nullptr, 0, 2);
     if (!plans_.isSettled()) return Error{"nodes have not finished the frames before the last change; try again"};
@@ -207,7 +259,7 @@ Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
                     {"kept", change->kept},
                     {"warnings", change->plan.warnings}};
     };
-    if (isDryRun) return nodesJson();
+    if (terms.isDryRun) return nodesJson();
     const size_t members = change->joining.size() + change->kept.size();
     if (!change->joining.empty()) {
         if (const auto can = canTakeNodes(members); !can) return can.error();
@@ -235,6 +287,10 @@ Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
     if (programs_->latency() < static_cast<uint32_t>(turns))
         programs_->setLatency(static_cast<uint32_t>(turns)); // so that the turns overlap
     Json result = nodesJson();
+    if (terms.revertAfterSeconds > 0) {
+        provisional_.begin(std::chrono::seconds(terms.revertAfterSeconds));
+        result["revertsInSeconds"] = terms.revertAfterSeconds;
+    }
     result["seconds"] = static_cast<double>(monotonicNowNs() - beganNs) / static_cast<double>(kNsPerS);
     feed_.publish(ControlTopic::Events,
                   {{"event", "plan-changed"}, {"joined", result["joined"]}, {"left", result["left"]}});

@@ -68,6 +68,7 @@ Json statusOf(const SessionStatus& status) {
         {"display", status.display},
         {"frames", status.wallFrames},
         {"latency", status.latency},
+        {"revertsInSeconds", status.revertsInSeconds ? Json(*status.revertsInSeconds) : Json()},
         {"recording", status.recording ? recordingJson(*status.recording) : Json()},
         {"delta", deltaJson(status.delta)},
         {"equalizers", equalizersJson(status.equalizers)},

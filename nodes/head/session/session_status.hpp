@@ -43,7 +43,8 @@ struct SessionStatus {
     int columns = 1, rows = 1;
     std::string display; // app, windows, none
     int64_t wallFrames = 0;
-    uint32_t latency = 0; // frames that programs may be ahead, at the moment
+    uint32_t latency = 0;                   // frames that programs may be ahead, at the moment
+    std::optional<double> revertsInSeconds; // of the last change; empty: it stays
     std::optional<RecordingStatus> recording;
     DeltaCounts delta;
     std::vector<EqualizerTotals> equalizers;

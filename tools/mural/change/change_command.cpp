@@ -16,7 +16,8 @@ constexpr const char* kChange = "change";
 // Returns true if the command line has an option that divides the work. Without one, the options describe one node.
 bool dividesWork(const CLI::App& app) {
     const auto options = app.get_options([](const CLI::Option* option) {
-        const bool isOwn = option->check_lname("dry-run") || option->check_lname("undo") || option->check_lname("json");
+        const bool isOwn = option->check_lname("dry-run") || option->check_lname("undo") ||
+                           option->check_lname("json") || option->check_lname("revert-after");
         return option->count() > 0 && !isOwn && !option->get_positional();
     });
     return !options.empty();
@@ -31,6 +32,10 @@ void describeChange(CLI::App& app, ChangeArguments& arguments) {
         ->type_name("SESSION");
     app.add_flag("--dry-run", arguments.isDryRun, "only print the nodes that would start and end");
     app.add_flag("--undo", arguments.isUndo, "return to the options before the last change");
+    app.add_option("--revert-after", arguments.revertAfterSeconds,
+                   "revert the change after this time unless mural ctl keep comes first")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(1, 3600));
     app.add_flag("--json", arguments.asJson, "print the reply of the session as one line of JSON");
 }
 
@@ -43,6 +48,12 @@ int changeCommand(const ChangeArguments& arguments) {
                               launch::kExitUsage);
     nlohmann::json request = nlohmann::json::object();
     if (arguments.isDryRun) request["dry-run"] = true;
+    if (arguments.revertAfterSeconds > 0) {
+        if (arguments.isUndo)
+            return requestFailure(kChange, "--revert-after excludes --undo (see mural change --help)",
+                                  launch::kExitUsage);
+        request["revert-after"] = arguments.revertAfterSeconds;
+    }
     if (!arguments.isUndo) {
         RunArguments options = arguments.options;
         options.program = {"unused"}; // the session has its program

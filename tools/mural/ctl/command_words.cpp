@@ -96,19 +96,23 @@ Result<CommandRequest> filled(const Json& operation, const std::vector<UsageWord
                               const std::vector<std::string>& words) {
     CommandRequest request{textOf(operation, "name")};
     const std::string hint = "; usage: mural ctl " + textOf(operation, "usage");
-    if (words.size() > usage.size()) return Error{"unexpected word " + words[usage.size()] + hint};
-    for (size_t i = 0; i < usage.size(); ++i) {
-        const UsageWord& wanted = usage[i];
-        if (i >= words.size() && wanted.isOptional) continue;
-        if (i >= words.size()) return Error{"the argument " + wanted.word + " is missing" + hint};
-        if (!wanted.isArgument && words[i] != wanted.word) return Error{"unexpected word " + words[i] + hint};
+    size_t at = 0;
+    for (const UsageWord& wanted : usage) {
+        if (at >= words.size() && wanted.isOptional) continue;
+        if (at >= words.size()) return Error{"the argument " + wanted.word + " is missing" + hint};
+        const std::string& word = words[at];
+        const bool isOther = !wanted.isArgument && word != wanted.word;
+        if (isOther && wanted.isOptional) continue;
+        if (isOther) return Error{"unexpected word " + word + hint};
+        ++at;
         if (!wanted.isArgument && !wanted.isOptional) continue;
         const Json* const argument = argumentOf(operation, wanted.word);
         if (argument == nullptr) return Error{"the session describes no argument " + wanted.word + hint};
-        auto value = wanted.isArgument ? valueOf(words[i], *argument) : Result<Json>(Json(true)); // "[force]"
+        auto value = wanted.isArgument ? valueOf(word, *argument) : Result<Json>(Json(true)); // "[force]"
         if (!value) return Error{value.error().message + hint};
         request.arguments[textOf(*argument, "name")] = std::move(*value);
     }
+    if (at < words.size()) return Error{"unexpected word " + words[at] + hint};
     return request;
 }
 
