@@ -25,12 +25,11 @@ set(CPACK_DEBIAN_DEBUGINFO_PACKAGE ON)
 # Mural opens these at run time, so dpkg-shlibdeps does not find them: the GL of programs and nodes, and the driver.
 set(CPACK_DEBIAN_MURAL_PACKAGE_NAME mural)
 set(CPACK_DEBIAN_MURAL_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_MURAL_PACKAGE_DEPENDS "libegl1, libgl1, libgl1-mesa-dri, libgles1, libgles2, libopengl0")
+set(CPACK_DEBIAN_MURAL_PACKAGE_DEPENDS "libegl1, libepoxy0, libgl1, libgl1-mesa-dri, libgles1, libgles2, libopengl0")
 set(CPACK_DEBIAN_MURAL_PACKAGE_RECOMMENDS "ffmpeg, openssh-client, xauth, xvfb")
-set(CPACK_DEBIAN_MURAL_PACKAGE_SUGGESTS "avahi-daemon, glmark2-x11, mesa-utils, mural-fabric, slurm-client")
+set(CPACK_DEBIAN_MURAL_PACKAGE_SUGGESTS "avahi-daemon, glmark2-x11, libavahi-client3, libosmesa6, mesa-utils, mural-fabric, slurm-client")
 set(CPACK_COMPONENT_MURAL_DESCRIPTION
-"runs OpenGL programs on display walls and clusters
-Mural runs unmodified OpenGL programs on a cluster of render nodes. One
+"Mural runs unmodified OpenGL programs on a cluster of render nodes. One
 machine runs the program. Several processes or machines draw it, each its own
 part of the picture. Every pixel equals the pixel that one machine draws.
 .
@@ -42,18 +41,16 @@ set(CPACK_DEBIAN_MURAL-FABRIC_PACKAGE_NAME mural-fabric)
 set(CPACK_DEBIAN_MURAL-FABRIC_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_MURAL-FABRIC_PACKAGE_DEPENDS "mural (= ${PROJECT_VERSION})")
 set(CPACK_COMPONENT_MURAL-FABRIC_DESCRIPTION
-"connections of Mural over RDMA networks
-Mural runs OpenGL programs on display walls and clusters. This plug-in adds
+"Mural runs OpenGL programs on display walls and clusters. This plug-in adds
 connections of the form fabric://, which use InfiniBand, RoCE and other
 networks by libfabric.")
 
 set(CPACK_DEBIAN_LIBMURAL_PACKAGE_NAME libmural${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_LIBMURAL_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBMURAL_PACKAGE_SUGGESTS "mural (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_LIBMURAL_PACKAGE_DEPENDS "libegl1, libgl1, libgl1-mesa-dri, libgles2, libopengl0")
+set(CPACK_DEBIAN_LIBMURAL_PACKAGE_DEPENDS "libegl1, libepoxy0, libgl1, libgl1-mesa-dri, libgles1, libgles2, libopengl0")
 set(CPACK_COMPONENT_LIBMURAL_DESCRIPTION
-"parallel rendering of OpenGL programs on clusters, library
-Programs with the native interface of Mural draw on display walls and
+"Programs with the native interface of Mural draw on display walls and
 clusters: each render node runs the program's own drawing code for its part
 of the picture or of the data.")
 configure_file(${CMAKE_CURRENT_LIST_DIR}/libmural/shlibs.in ${CMAKE_CURRENT_BINARY_DIR}/libmural/shlibs @ONLY)
@@ -64,8 +61,7 @@ set(CPACK_DEBIAN_LIBMURAL-DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBMURAL-DEV_PACKAGE_DEPENDS "libmural${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION}), libgl-dev")
 set(CPACK_DEBIAN_LIBMURAL-DEV_PACKAGE_SUGGESTS "mural (= ${PROJECT_VERSION})")
 set(CPACK_COMPONENT_LIBMURAL-DEV_DESCRIPTION
-"parallel rendering of OpenGL programs on clusters, development files
-Headers of the native interface of Mural, and the files by which CMake and
+"Headers of the native interface of Mural, and the files by which CMake and
 pkg-config find its library.")
 
 # Debian Policy 12.5 and 12.7: every package has its copyright and changelog.
