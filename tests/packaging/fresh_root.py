@@ -117,7 +117,7 @@ def check_wall(root):
     out = root.require('wall of glxgears', 'cd && mural run --tiles 2x2 --frames 30 --out shots -- glxgears 2>&1 && ls shots | wc -l', '1000')
     expect(out.strip().split('\n')[-1] == '30', 'glxgears: %s' % out[-800:])
     out = root.require('exactness of glxgears', 'cd && mural run --tiles 2x2 --frames 10 --display none --verify -- glxgears 2>&1', '1000')
-    expect(' 0 differ' in out or '0 pixels differ' in out or 'no pixel' in out, 'glxgears --verify: %s' % out[-800:])
+    expect(': 0 differ' in out, 'glxgears --verify: %s' % out[-800:])
     out = root.require('EGL program', 'cd && mural run --frames 5 --out egl -- es2gears_x11 2>&1 && ls egl | wc -l', '1000')
     expect(out.strip().split('\n')[-1] == '5', 'es2gears_x11: %s' % out[-800:])
 
@@ -139,7 +139,7 @@ def main():
         root.require('programs of the test', 'apt-get -q -y install --no-install-recommends bash-completion man-db')
         before = root.files()
         root.require('apt install mural', 'cd /tmp && apt-get -q -y install ./mural_*.deb')
-        root.require('apt install mesa-utils', 'apt-get -q -y install --no-install-recommends mesa-utils mesa-utils-extra || apt-get -q -y install --no-install-recommends mesa-utils')
+        root.require('apt install mesa-utils', 'apt-get -q -y install --no-install-recommends mesa-utils')
         check_installed(root)
         check_wall(root)
         root.require('apt install libmural-dev', 'cd /tmp && apt-get -q -y install --no-install-recommends ./libmural*.deb')
