@@ -69,7 +69,7 @@ def expect(lab, program, verdict, words=(), **more):
 
 def exact(lab):
     page = os.path.join(lab.folder, 'app.html')
-    report, wrong = lab.run(['{programs}/long_run', '--frames', '100000', '--size', '250x190'], seconds=3, options=['--html', page])
+    report, wrong = lab.run(['{programs}/long_run', '--frames', '100000', '--size', '250x190'], seconds=5, options=['--html', page])
     if wrong or report['verdict'] != EXACT:
         return wrong or report['sentence']
     with open(page, encoding='utf-8') as stream:

@@ -52,7 +52,8 @@ HostsSurvey surveyOf(std::vector<HostExamined> hosts) {
 std::vector<std::string> findings(const HostExamined& x,
                                   const std::map<std::string, std::vector<ExpectedScreen>>& expected = {}) {
     std::vector<std::string> names;
-    for (const Check& c : judgeHosts(surveyOf({x}), expected).front().checks)
+    const std::vector<HostChecks> hosts = judgeHosts(surveyOf({x}), expected);
+    for (const Check& c : hosts.front().checks)
         if (c.health != Health::Ok) {
             names.push_back(c.name);
             EXPECT_FALSE(c.advice.empty()) << c.name;

@@ -48,6 +48,8 @@ Judgement judgeWithoutFrames(const AppMeasured& m) {
     if (failed(m.native))
         return {Verdict::NotCapturable,
                 "it fails without Mural too (" + endOf(m.native) + ") before a picture" + lastWords(m.native)};
+    if (!m.tiles.report.is_object() && !m.tiles.outcome.endedItself)
+        return {Verdict::NotCapturable, "the session was not ready in time on this machine; see mural doctor"};
     if (!m.tiles.report.is_object()) // mural run could not start it
         return {Verdict::NotCapturable, m.tiles.outcome.messages.empty()
                                             ? "mural run could not start it, " + endOf(m.tiles)

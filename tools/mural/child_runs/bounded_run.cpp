@@ -108,15 +108,22 @@ Result<BoundedOutcome> runBounded(const BoundedCommand& command) {
     for (Output& output : outputs) output.started();
 
     const int64_t beganNs = monotonicNowNs();
-    const Deadline limit = Deadline::inMs(command.limitMs);
+    const Deadline total = Deadline::inMs(command.totalMs);
+    Deadline limit = Deadline::inMs(command.startMs);
+    int64_t begunNs = 0; // 0: not yet
     Deadline nextWatch = Deadline::inMs(kWatchMs);
-    while (child->running() && !limit.passed() && Interruption::signal() == 0) {
+    while (child->running() && !limit.passed() && !total.passed() && Interruption::signal() == 0) {
         pollfd waiting[2] = {{outputs[0].fd(), POLLIN, 0}, {outputs[1].fd(), POLLIN, 0}};
         poll(waiting, 2, kTurnMs);
         for (Output& output : outputs) output.drain();
-        if (!command.watch || !nextWatch.passed()) continue;
+        if (!nextWatch.passed()) continue;
         nextWatch = Deadline::inMs(kWatchMs);
-        command.watch(child->pid());
+        if (begunNs == 0 && command.hasBegun(child->pid())) {
+            begunNs = monotonicNowNs();
+            limit = Deadline::inMs(command.limitMs);
+        }
+        if (begunNs != 0 && command.watch)
+            command.watch(child->pid(), static_cast<double>(monotonicNowNs() - begunNs) * 1e-9);
     }
     outcome.seconds = static_cast<double>(monotonicNowNs() - beganNs) * 1e-9;
     outcome.endedItself = !child->running();

@@ -15,10 +15,15 @@ namespace mural::cli {
 struct BoundedCommand {
     std::vector<std::string> words;
     launch::Environment environment;
-    int64_t limitMs = 0;              // it is ended then
-    int64_t graceMs = 0;              // time to end after each of two requests
-    pid_t display = -1;               // process of a display that stays; -1: none
-    std::function<void(pid_t)> watch; // called several times per second with the command's pid; may be empty
+    int64_t startMs = 0; // time until hasBegun() must be true
+    int64_t limitMs = 0; // time from then on, after which it is ended
+    int64_t totalMs = 0; // limit of both
+    int64_t graceMs = 0; // time to end after each of two requests
+    pid_t display = -1;  // process of a display that stays; -1: none
+    // Whether the command with this pid has started the work. Called several times per second.
+    std::function<bool(pid_t)> hasBegun;
+    // Called several times per second from then on, with the pid and the time since then; may be empty.
+    std::function<void(pid_t, double seconds)> watch;
 };
 
 struct BoundedOutcome {

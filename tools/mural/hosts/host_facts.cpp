@@ -16,7 +16,8 @@ std::string stringIn(const json& j, const char* name) {
 }
 uint64_t countIn(const json& j, const char* name) {
     const auto found = j.find(name);
-    return found != j.end() && found->is_number_unsigned() ? found->get<uint64_t>() : 0;
+    if (found == j.end() || !found->is_number_integer()) return 0;
+    return found->is_number_unsigned() || found->get<int64_t>() >= 0 ? found->get<uint64_t>() : 0;
 }
 int sizeIn(const json& j, const char* name) { return static_cast<int>(std::min<uint64_t>(countIn(j, name), 1 << 24)); }
 bool flagIn(const json& j, const char* name) {

@@ -16,6 +16,7 @@ namespace mural::cli {
 
 namespace {
 
+constexpr int64_t kStartMs = 10'000;    // of a session, until the program starts
 constexpr int64_t kGraceMs = 4'500;     // mural run ends a program that ignores SIGTERM within 3 s
 constexpr int64_t kOverheadMs = 16'000; // of all runs together; the rest of the 20 s is for their last one
 constexpr int64_t kLeastMs = 1'500;     // a shorter run shows nothing
@@ -48,7 +49,7 @@ Result<std::unique_ptr<AppRuns>> AppRuns::open(AppRunsPlan plan) {
 }
 
 AppRun AppRuns::perform(const std::string& name, std::vector<std::string> options,
-                        const std::function<void(pid_t)>& watch) {
+                        const std::function<void(pid_t, double)>& watch) {
     AppRun run;
     run.name = name;
     run.options = options;
@@ -69,9 +70,12 @@ AppRun AppRuns::perform(const std::string& name, std::vector<std::string> option
     command.environment = launch::Environment::current();
     launch::removeCapture(command.environment);
     display_->use(command.environment);
+    command.startMs = std::min(kStartMs, leftMs);
     command.limitMs = limitMs;
+    command.totalMs = leftMs;
     command.graceMs = kGraceMs;
     command.display = display_->pid();
+    command.hasBegun = [](pid_t pid) { return !ProgramWatch::processesOf(pid).empty(); };
     command.watch = watch;
     auto outcome = runBounded(command);
     if (!outcome) {
@@ -85,12 +89,11 @@ AppRun AppRuns::perform(const std::string& name, std::vector<std::string> option
 
 void AppRuns::measureNative(AppMeasured& m) {
     ProgramWatch watch;
-    const Deadline pictureAt = Deadline::inMs(static_cast<int64_t>(plan_.seconds * 1000 * kPictureShare));
     const std::string picture = scratch_.path() + "/native.png";
     bool pictureTaken = !plan_.pictures || !plan_.size.empty(); // --size has a display of its own
-    m.native = perform("native", {"--native"}, [&](pid_t run) {
+    m.native = perform("native", {"--native"}, [&](pid_t run, double seconds) {
         watch.look(run);
-        if (pictureTaken || !pictureAt.passed()) return;
+        if (pictureTaken || seconds < plan_.seconds * kPictureShare) return;
         pictureTaken = true;
         if (saveLargestWindow(*display_, picture)) m.nativePicture = picture;
     });
@@ -104,9 +107,8 @@ void AppRuns::measureTiles(AppMeasured& m) {
     if (plan_.pictures) options.insert(options.end(), {"--out", pictures, "--save", kSavedFrames});
     // A program that still runs at its end is examined before.
     const auto bypass = launch::BypassWatch::create();
-    const Deadline examinedAt = Deadline::inMs(static_cast<int64_t>(plan_.seconds * 1000 * kExaminedShare));
-    m.tiles = perform("tiles", options, [&](pid_t run) {
-        if (!bypass || !m.bypassSeen.empty() || !examinedAt.passed()) return;
+    m.tiles = perform("tiles", options, [&](pid_t run, double seconds) {
+        if (!bypass || !m.bypassSeen.empty() || seconds < plan_.seconds * kExaminedShare) return;
         m.bypassSeen = bypass.value()->describeRunning(ProgramWatch::processesOf(run));
     });
     if (m.tiles.frames() > 0) m.trace = readTraceFacts(trace);

@@ -63,7 +63,7 @@ private:
     AppRuns(AppRunsPlan plan, ScratchFolder scratch, std::unique_ptr<launch::PrivateDisplay> display)
         : plan_(std::move(plan)), scratch_(std::move(scratch)), display_(std::move(display)) {}
     AppRun perform(const std::string& name, std::vector<std::string> options,
-                   const std::function<void(pid_t)>& watch = {});
+                   const std::function<void(pid_t, double)>& watch = {});
     void measureNative(AppMeasured& m);
     void measureTiles(AppMeasured& m);
 

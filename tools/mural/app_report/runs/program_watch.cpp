@@ -117,8 +117,10 @@ std::vector<pid_t> ProgramWatch::processesOf(pid_t run) {
     std::vector<pid_t> pids;
     for (const launch::ProcessFacts& p : launch::descendantsOf(run, {})) {
         const std::string binary = linkOf("/proc/" + std::to_string(p.pid) + "/exe");
-        if (p.state != 'Z' && !binary.empty() && binary != mural && launch::baseName(binary) != "Xvfb")
-            pids.push_back(p.pid);
+        const std::string_view name = launch::baseName(binary);
+        // mural run asks the loader for the program's libraries.
+        const bool isHelper = binary == mural || name == "Xvfb" || name.starts_with("ld-linux");
+        if (p.state != 'Z' && !binary.empty() && !isHelper) pids.push_back(p.pid);
     }
     return pids;
 }
