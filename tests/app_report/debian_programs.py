@@ -163,7 +163,7 @@ def main():
         wrong += more
         failed += bool(wrong)
         rows.append(row(name, report))
-        print('%s: %s: %s%s' % (name, report['verdict'], report['sentence'][:120], '; WRONG: %s' % wrong if wrong else ''), flush=True)
+        print('%s: %s%s\n%s' % (name, report['sentence'][:120], '; WRONG: %s' % wrong if wrong else '', rows[-1]), flush=True)
     print('\n| program | verdict | GL of its contexts | round trips per frame | stream per frame | sent to each node | tiles can move | frames with shared draws | speed, two nodes here : native |\n|---|---|---|---|---|---|---|---|---|')
     print('\n'.join(rows))
     print('%d programs, %d with a wrong statement' % (len(rows), failed))

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int64_t kStartMs = 10'000;    // of a session, until the program starts
 constexpr int64_t kGraceMs = 4'500;     // mural run ends a program that ignores SIGTERM within 3 s
-constexpr int64_t kOverheadMs = 16'000; // of all runs together; the rest of the 20 s is for their last one
+constexpr int64_t kOverheadMs = 14'000; // of all runs together; the rest of the 20 s is for their last one
 constexpr int64_t kLeastMs = 1'500;     // a shorter run shows nothing
 constexpr double kPictureShare = 0.6;   // part of the native run after which its window is read
 constexpr double kExaminedShare = 0.6;  // part of a run after which its libraries are examined
