@@ -95,7 +95,8 @@ def wrong_against_another_run(mural, command, report, seconds, folder):
     file = os.path.join(folder, 'again.json')
     if os.path.exists(file):
         os.remove(file)
-    run = ['timeout', '-k', '10', '-s', 'TERM', str(seconds), mural, 'run', '--quiet', '--tiles', '2x2', '--verify', '--report', file, '--display', 'none', '--', *command]
+    # The number of frames ends it, because a loaded machine starts sessions slowly.
+    run = ['timeout', '-k', '10', '-s', 'TERM', str(seconds + 20), mural, 'run', '--quiet', '--frames', '20', '--tiles', '2x2', '--verify', '--report', file, '--display', 'none', '--', *command]
     environment = {k: v for k, v in os.environ.items() if k not in ('DISPLAY', 'XAUTHORITY')}
     done = subprocess.run(run, env=environment, capture_output=True, timeout=seconds + 60)
     again = {}
@@ -142,6 +143,7 @@ def main():
     parser.add_argument('--keep')
     a = parser.parse_args()
     mural = os.path.abspath(a.mural)
+    os.environ['PATH'] += ':/usr/games'
     rows, failed = [], 0
     folder = os.path.abspath(a.keep) if a.keep else tempfile.mkdtemp()
     os.makedirs(folder, exist_ok=True)

@@ -64,6 +64,8 @@ class Doctor:
         for host in report['hosts']:
             wrong = [c for c in host['checks'] if c['health'] != 'ok']
             worst = max([worst] + [{'warn': 1, 'bad': 2}[c['health']] for c in wrong])
+            for c in wrong:
+                print('     %s: %s: %s' % (host['host'], c['name'], c['found']), flush=True)
             if any(not c['advice'] for c in wrong):
                 return {}, 'a finding without a remedy: %s' % wrong
             wrong = [c['name'] for c in wrong if c['name'] not in NOISE]
