@@ -25,8 +25,8 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int64_t kGlMs = 5'000;
-constexpr int64_t kDisplayMs = 5'000;
+constexpr int64_t kGlMs = 8'000;
+constexpr int64_t kDisplayMs = 8'000;
 
 std::string systemText() {
     std::string name = "Linux";

@@ -124,6 +124,10 @@ AppMeasured AppRuns::measure(const std::function<void(const std::string&)>& prog
     m.program = plan_.program;
     m.size = plan_.size;
     m.seconds = plan_.seconds;
+    m.native.name = "native"; // also of runs that are not performed
+    m.tiles.name = "tiles";
+    m.balance.name = "balance";
+    m.db.name = "db";
     allRuns_ = Deadline::inMs(static_cast<int64_t>(4 * plan_.seconds * 1000) + kOverheadMs - kGraceMs);
     const launch::ProgramCheck check = launch::checkProgram(
         plan_.program.front(), launch::Environment::current().get("PATH").value_or("/usr/bin:/bin"));
