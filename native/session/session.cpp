@@ -57,6 +57,7 @@ public:
         if (welcome.multicasts == 0) options.gatherNs = 0;
         if (welcome.isOneMachine != 0) options.blobs = objects::BlobTransfer::Place;
         options.hasFrames = true;
+        options.mostCommitBytes = wire::kMaxObjectBytes / 2; // leaves room for the rest of the message
         writer_ = std::make_unique<objects::ObjectWriter>(*link_, options);
         queues_ = std::make_unique<objects::QueueHub>(*link_);
         barriers_ = std::make_unique<objects::BarrierHub>(*this);

@@ -55,10 +55,16 @@ Result<void> ObjectMaster::verify(const Object& object, const ObjectChange& chan
     if ((change.slots & ~all) != 0 || (isWhole && change.slots != all) ||
         change.values.size() != static_cast<size_t>(std::popcount(change.slots)))
         return refused("the values do not match its fields");
-    for (const auto& value : change.values)
+    uint64_t sum = 0;
+    for (const auto& value : change.values) {
         if (value.bytes.size() > kMaxValueBytes)
             return refused("a field has " + std::to_string(value.bytes.size()) +
                            " bytes; use mural::Blob for 4 GiB and more");
+        sum += value.bytes.size();
+    }
+    if (sum > options_.mostCommitBytes)
+        return refused("its changed fields have " + std::to_string(sum) + " bytes, of at most " +
+                       std::to_string(options_.mostCommitBytes) + "; use mural::Blob for large data");
     return {};
 }
 

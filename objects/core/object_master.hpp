@@ -23,6 +23,8 @@ struct MasterOptions {
     int64_t gatherNs = 2'000'000;
     // frame() is called for every frame: replaced blobs stay until the frame in preparation is drawn, also the first.
     bool hasFrames = false;
+    // Largest sum of the values of a commit, as the lane to all readers permits.
+    uint64_t mostCommitBytes = UINT64_MAX;
 };
 
 struct ObjectDescription {

@@ -148,6 +148,19 @@ TEST(ObjectMaster, sendsDifferencesToReadersOfKeptVersions) {
     EXPECT_GT(sink.take().front().bytes.size(), 1000U);
 }
 
+TEST(ObjectMaster, refusesCommitsBeyondTheLimitOfItsLane) {
+    RecordingSink sink;
+    ObjectMaster master(sink, {.mostCommitBytes = 100});
+    const ObjectNumber number = master.share(described({.name = "mesh"})).value();
+    const std::vector<std::byte> most(100), more(101);
+    commit(master, number, most);
+    const auto refused = master.commit(number, {1, {{more, {}}}});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message, "cannot commit object \"mesh\" (Type): its changed fields have 101 bytes, of at "
+                                       "most 100; use mural::Blob for large data");
+    EXPECT_EQ(master.versionOf(number), 1U);
+}
+
 TEST(ObjectMaster, sendsABlobOnceWhileItIsInUse) {
     RecordingSink sink;
     ObjectMaster master(sink);
