@@ -180,6 +180,9 @@ Result<std::string> readLaunch(const RunArguments& a, const launch::Environment&
             "--per-host needs hosts: --nodes, --hostfile, or a batch job; --local-nodes sets the number of nodes "
             "on this machine"};
     if (why.empty()) return std::string();
+    const bool areWaiting =
+        !isCommand && std::ranges::all_of(c.hosts, [](const auto& h) { return h.starts_with("@"); });
+    if (areWaiting && !c.hosts.empty()) return std::string("nodes start by mural call: all of them wait for heads");
     return fmt::format("nodes start by {}: {}", c.launchCommand, why);
 }
 
