@@ -89,7 +89,9 @@ void AppLink::sendObject(uint16_t receivers, std::span<const std::byte> message)
     // Bounds the memory of packets that the nodes do not accept.
     constexpr size_t kMaxWaitingBytes = size_t{64} << 20;
     constexpr int64_t kPatienceMs = 60'000;
-    if (writer.waitingBytes() > kMaxWaitingBytes && deadline_.passed()) deadline_ = Deadline::inMs(kPatienceMs);
+    const bool mayWait = std::this_thread::get_id() != reporter_.load();
+    if (mayWait && writer.waitingBytes() > kMaxWaitingBytes && deadline_.passed())
+        deadline_ = Deadline::inMs(kPatienceMs);
     (void)writer.sendComplete();
 }
 
@@ -145,8 +147,12 @@ Result<void> AppLink::await(const std::atomic<uint32_t>& word, const char* what,
         if (condition()) return {};
         if (!isAlive()) return Error{"the session is over"};
         if (auto sent = flush(); !sent) return sent;
-        if (deadline_.passed()) return Error{std::string(what) + "; see mural stat"};
-        futexWait(word, seen, deadline_.leftNs(kSliceNs));
+        const Deadline deadline = [this] {
+            const std::lock_guard lock(sending_);
+            return deadline_;
+        }();
+        if (deadline.passed()) return Error{std::string(what) + "; see mural stat"};
+        futexWait(word, seen, deadline.leftNs(kSliceNs));
     }
 }
 

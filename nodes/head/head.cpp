@@ -67,6 +67,7 @@ Result<LaunchOptions> launchOptionsOf(const SessionConfig& config) {
     settings.binary.mural = options.isNative ? settings.ownMural : settings.binary.program;
     settings.binary.isNative = options.isNative;
     settings.version = {MURAL_VERSION, streamBuild()};
+    settings.startTimeoutMs = config.startTimeoutMs;
     auto launcher = createLauncher(settings, launch::Environment::current());
     if (!launcher) return launcher.error();
     options.launcher = std::move(*launcher);

@@ -21,7 +21,7 @@ constexpr int64_t kConnectMs = 20'000;
 constexpr int64_t kJoinMs = 10'000;
 constexpr int64_t kBesideMs = 2; // delay of packets to this node only, beside a group
 
-constexpr int64_t kTryMs = 4'000; // for one of several endpoints
+constexpr int64_t kTryMs = 2'000; // for one of several endpoints
 
 std::vector<std::string> endpointsOf(const std::string& text) {
     std::vector<std::string> all;

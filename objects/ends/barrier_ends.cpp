@@ -86,6 +86,10 @@ struct BarrierLine::Core {
         at.frame = now;
         return (now + 1) * kRoundsPerFrame + at.times;
     }
+    // A member that was late enters the same round again.
+    void repeatRound(uint32_t barrier) {
+        if (const auto at = positions.find(barrier); at != positions.end() && at->second.times > 0) --at->second.times;
+    }
     bool isClosed = false;
 };
 
@@ -107,14 +111,19 @@ public:
         member.enter(patienceMs, core_->nextRound(number_));
         int64_t lateSinceNs = 0;
         for (;;) {
-            if (const auto result = member.result()) return *result;
+            if (const auto result = member.result()) {
+                if (!*result) core_->repeatRound(number_);
+                return *result;
+            }
             if (core_->isClosed) return over();
             if (deadline.passed()) {
                 if (lateSinceNs == 0) lateSinceNs = monotonicNowNs();
-                if (monotonicNowNs() - lateSinceNs > objects::kLeaderGraceNs)
+                if (monotonicNowNs() - lateSinceNs > objects::kLeaderGraceNs) {
+                    core_->repeatRound(number_);
                     return Error{"barrier \"" + name_ +
                                  "\" was not passed within the deadline, and the session does "
                                  "not reply; see its log"};
+                }
             }
             const int64_t sliceNs = std::max<int64_t>(deadline.leftNs(objects::kBarrierWaitSliceNs), kNsPerMs);
             if (core_->receive) {

@@ -126,10 +126,27 @@ TEST(LaunchOptions, namesWrongOptions) {
 }
 
 TEST(SlurmAllocation, runsTheSameCommandInANewJob) {
-    const Names command = sallocCommandOf(
-        "/bin/mural", {"run", "--slurm", "-N4 -t 60", "--tiles", "2x2", "--", "app", "--slurm", "x"}, "-N4 -t 60");
-    EXPECT_EQ(command, (Names{"salloc", "--job-name=mural", "--kill-command=TERM", "-N4", "-t", "60", "/bin/mural",
-                              "run", "--tiles", "2x2", "--", "app", "--slurm", "x"}));
+    const Names program{"app", "--slurm", "x"};
+    const Names wanted{"salloc",
+                       "--job-name=mural",
+                       "--kill-command=TERM",
+                       "-N4",
+                       "-t",
+                       "60",
+                       "/bin/mural",
+                       "run",
+                       "--tiles",
+                       "2x2",
+                       "--",
+                       "app",
+                       "--slurm",
+                       "x"};
+    for (const Names& separator : {Names{}, Names{"--"}}) {
+        Names arguments{"run", "--slurm", "-N4 -t 60", "--tiles", "2x2"};
+        arguments.insert(arguments.end(), separator.begin(), separator.end());
+        arguments.insert(arguments.end(), program.begin(), program.end());
+        EXPECT_EQ(sallocCommandOf("/bin/mural", arguments, program, "-N4 -t 60"), wanted);
+    }
 }
 
 } // namespace

@@ -298,7 +298,7 @@ def stopped(lab):
         run.process.send_signal(signal.SIGTERM)
         status = run.status()
         left = run.left_behind()
-        return "left over: %s" % left if left else None if status else "status %s" % status
+        return "left over: %s" % left if left else None if status in (1, 143) else "status %s" % status
 
 
 def main():

@@ -205,7 +205,9 @@ TEST(StarterLink, endsItsCommandWithItsInput) {
     {
         const auto link = linkOf("echo mural-starter 1 b wall1; cat; echo over >" + file);
         const auto node = nodeOf(*link);
-        while (!link->isGone("wall1") && node->pid() == 0 && link->recentOutput().empty()) poll(nullptr, 0, 5);
+        const Deadline deadline = Deadline::inMs(kPatienceMs);
+        while (!link->isGone("wall1") && node->pid() == 0 && link->recentOutput().empty() && !deadline.passed())
+            poll(nullptr, 0, 5);
     }
     std::ifstream text(file);
     std::string word;

@@ -115,20 +115,44 @@ TEST(QueueEnds, refuseItemsOfAnotherType) {
     EXPECT_NE(late.error().message.find("within the deadline"), std::string::npos);
 }
 
-TEST(BarrierEnds, releaseThreadsTogetherAndNameTheMissing) {
+// Two processes that enter barriers, and their leader.
+struct BarrierEndsWorld {
     std::vector<std::unique_ptr<BarrierLine>> lines;
     std::unique_ptr<BarrierHub> hub;
     std::vector<std::unique_ptr<PostingSink>> sinks;
     DeliveryThread delivery;
-    PostingSink toMembers(delivery, [&](PeerId peer, auto message) { EXPECT_TRUE(lines[peer - 1]->input(message)); });
-    hub = std::make_unique<BarrierHub>(toMembers);
-    for (PeerId peer = 1; peer <= 2; ++peer) {
-        hub->join(peer, peer == 1 ? "left" : "right");
-        sinks.push_back(std::make_unique<PostingSink>(delivery, [&hub, peer](PeerId, auto message) {
-            EXPECT_TRUE(hub->input(peer, message, monotonicNowNs()));
-        }));
-        lines.push_back(std::make_unique<BarrierLine>(*sinks.back()));
+    PostingSink toMembers{delivery,
+                          [this](PeerId peer, auto message) { EXPECT_TRUE(lines[peer - 1]->input(message)); }};
+    std::atomic<bool> isEnding = false;
+    std::thread clock;
+
+    BarrierEndsWorld() {
+        hub = std::make_unique<BarrierHub>(toMembers);
+        for (PeerId peer = 1; peer <= 2; ++peer) {
+            hub->join(peer, peer == 1 ? "left" : "right");
+            sinks.push_back(std::make_unique<PostingSink>(delivery, [this, peer](PeerId, auto message) {
+                EXPECT_TRUE(hub->input(peer, message, monotonicNowNs()));
+            }));
+            lines.push_back(std::make_unique<BarrierLine>(*sinks.back()));
+        }
     }
+    ~BarrierEndsWorld() {
+        isEnding = true;
+        if (clock.joinable()) clock.join();
+    }
+    void startClock() {
+        clock = std::thread([this] {
+            while (!isEnding) {
+                hub->tick(monotonicNowNs());
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
+        });
+    }
+};
+
+TEST(BarrierEnds, releaseThreadsTogetherAndNameTheMissing) {
+    BarrierEndsWorld world;
+    auto& lines = world.lines;
     std::atomic<int> inside = 0;
     const auto pass = [&](size_t member) {
         Barrier barrier = lines[member]->open("start");
@@ -143,23 +167,32 @@ TEST(BarrierEnds, releaseThreadsTogetherAndNameTheMissing) {
     std::thread other([&] { pass(1); });
     pass(0);
     other.join();
-    std::atomic<bool> isEnding = false;
-    std::thread clock([&] {
-        while (!isEnding) {
-            hub->tick(monotonicNowNs());
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-    });
+    world.startClock();
     Barrier barrier = lines[0]->open("start");
     const auto late = barrier.enter(Deadline::inMs(10));
     ASSERT_FALSE(late);
     EXPECT_NE(late.error().message.find("right did not enter"), std::string::npos) << late.error().message;
-    hub->leave(2);
+    world.hub->leave(2);
     EXPECT_EQ(barrier.enter().value(), 1U);
-    isEnding = true;
-    clock.join();
     lines[0]->close();
     EXPECT_FALSE(barrier.enter());
+}
+
+TEST(BarrierEnds, enterTheSameRoundOfAFrameAgain) {
+    BarrierEndsWorld world;
+    world.startClock();
+    for (auto& line : world.lines) line->countByFrames([] { return uint64_t{7}; });
+    Barrier left = world.lines[0]->open("start");
+    Barrier right = world.lines[1]->open("start");
+    ASSERT_FALSE(left.enter(Deadline::inMs(10)));
+    std::thread other([&] {
+        const auto passed = right.enter(Deadline::inMs(20'000));
+        EXPECT_TRUE(passed && passed.value() == 2U);
+    });
+    const auto again = left.enter(Deadline::inMs(20'000));
+    other.join();
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again.value(), 2U);
 }
 
 } // namespace

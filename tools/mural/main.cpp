@@ -199,8 +199,8 @@ private:
     }
 
     int runInAllocation() {
-        return mural::cli::becomeSalloc(
-            mural::cli::sallocCommandOf(mural::launch::ownBinary(), arguments_, *runArguments_.slurm));
+        return mural::cli::becomeSalloc(mural::cli::sallocCommandOf(mural::launch::ownBinary(), arguments_,
+                                                                    runArguments_.program, *runArguments_.slurm));
     }
 
     void addRecordings() {

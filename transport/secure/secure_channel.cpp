@@ -45,6 +45,12 @@ SSL_SESSION* sessionOf(SSL* tls, const ChannelSecret& secret) {
     return nullptr;
 }
 
+// The alerts by which a host rejects an identity or its key.
+bool isRejection(int alert) {
+    return alert == SSL3_AD_HANDSHAKE_FAILURE || alert == SSL3_AD_ILLEGAL_PARAMETER || alert == TLS1_AD_DECRYPT_ERROR ||
+           alert == TLS1_AD_UNKNOWN_PSK_IDENTITY;
+}
+
 } // namespace
 
 struct SecureChannel::State {
@@ -176,7 +182,10 @@ Error SecureChannel::State::handshakeError(unsigned long code) const {
     const int reason = ERR_GET_REASON(code);
     if (host && reason == SSL_R_BINDER_DOES_NOT_VERIFY)
         return Error{"\"" + name + "\" has another secret; use the same secret at both ends"};
-    if (!host && reason >= SSL_AD_REASON_OFFSET) // an alert of the host
+    if (!host && (reason == SSL_AD_REASON_OFFSET + TLS1_AD_NO_APPLICATION_PROTOCOL ||
+                  reason == SSL_AD_REASON_OFFSET + TLS1_AD_PROTOCOL_VERSION))
+        return Error{"the host uses another version of Mural's secure channel; run the same version at both ends"};
+    if (!host && isRejection(reason - SSL_AD_REASON_OFFSET))
         return Error{"the host rejects the secret of \"" + name + "\"; use the same secret at both ends"};
     const char* text = ERR_reason_error_string(code);
     return Error{std::string("the handshake failed: ") + (text != nullptr ? text : "the peer's data is invalid")};

@@ -179,6 +179,8 @@ void HeadSession::takeSpareFor(int node) {
     log::info(log::Topic::Node, "the spare host ", to, " takes over the nodes of ", from);
     isMovingToSpare_ = true;
     spareMove_ = std::thread([this, from, to, node] {
+        if (provisional_.keep())
+            log::warning(log::Topic::Session, "the last change does not revert any more, because a host was lost");
         auto moved = moveNodes(from, to, {});
         for (int attempt = 1; !moved && attempt < kSpareAttempts && !finishing_; ++attempt) {
             // other nodes of the host may be in their restarts, or another change may be in progress
@@ -202,8 +204,10 @@ Result<Json> HeadSession::undoChange(ChangeTerms terms) {
         if (!history_.empty()) before = history_.back();
     }
     if (!before) return Error{"no change has happened that can be undone"};
-    if (!terms.isDryRun) provisional_.keep(); // the undo is its reversion
+    const auto left = provisional_.left();
+    const bool wasPending = !terms.isDryRun && provisional_.keep(); // the undo is its reversion
     auto done = changePlan(std::move(*before), terms);
+    if (!done && wasPending) provisional_.begin(std::max(*left, std::chrono::milliseconds(kRevertPauseMs)));
     if (!done || terms.isDryRun) return done;
     const std::lock_guard lock(mutex_);
     for (int i = 0; i < 2 && !history_.empty(); ++i) history_.pop_back(); // the change, and its undo

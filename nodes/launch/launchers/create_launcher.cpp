@@ -27,6 +27,7 @@ public:
         return nodes;
     }
     std::string whyOver() override { return others_->whyOver(); }
+    [[nodiscard]] bool knowsHosts() const override { return others_->knowsHosts(); }
 
 private:
     static bool isWaiting(const NodeTask& task) { return task.host.starts_with("@"); }
@@ -37,7 +38,8 @@ private:
 Result<std::unique_ptr<Launcher>> launcherOf(const LaunchSettings& settings, const launch::Environment& environment) {
     if (settings.how == "ssh")
         return std::unique_ptr<Launcher>(std::make_unique<SshLauncher>(settings.binary, settings.version));
-    if (settings.how == "pmix") return std::unique_ptr<Launcher>(std::make_unique<PmixLauncher>());
+    if (settings.how == "pmix")
+        return std::unique_ptr<Launcher>(std::make_unique<PmixLauncher>(settings.startTimeoutMs));
     if (settings.how != "slurm")
         return std::unique_ptr<Launcher>(
             std::make_unique<CommandLauncher>(launch::wordsOf(settings.how), settings.binary));

@@ -17,6 +17,7 @@ struct LaunchSettings {
     std::string ownMural;    // path of mural on this machine
     NodeBinary binary;
     StarterVersion version;
+    int64_t startTimeoutMs = 30'000; // until all processes of mpirun or srun have arrived
 };
 
 // environment: of this process; it names the batch job.

@@ -47,7 +47,7 @@ Result<std::vector<std::string>> rangesOf(std::string_view text) {
         const auto first = numberOf(low), last = numberOf(high);
         if (!first || !last || *last < *first || *last - *first >= kMaxHosts)
             return Error{"\"" + std::string(part) + "\" is no range of numbers"};
-        for (uint64_t n = *first; n <= *last; ++n) numbers.push_back(padded(n, low.size()));
+        for (uint64_t i = 0; i <= *last - *first; ++i) numbers.push_back(padded(*first + i, low.size()));
     }
     return numbers;
 }

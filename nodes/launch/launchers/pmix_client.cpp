@@ -87,7 +87,9 @@ Result<std::unique_ptr<PmixClient>> PmixClient::open() {
     return std::unique_ptr<PmixClient>(new PmixClient(std::move(library)));
 }
 
-PmixClient::~PmixClient() { library_->finalize(nullptr, 0); }
+PmixClient::~PmixClient() {
+    if (!isInFence_) library_->finalize(nullptr, 0);
+}
 
 Result<void> PmixClient::put(const std::string& key, const std::string& text) const {
     if (key.size() > kMaxKey) return Error{"PMIx_Put: the key is too long"};
@@ -103,8 +105,10 @@ Result<void> PmixClient::fence(Deadline deadline) const {
     auto done = promise->get_future();
     std::thread([library = library_, promise] { promise->set_value(library->fence(nullptr, 0, nullptr, 0)); }).detach();
     while (done.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready)
-        if (deadline.passed())
+        if (deadline.passed()) {
+            isInFence_ = true;
             return Error{"not all processes of the start have arrived; each must run the same mural run"};
+        }
     return library_->check("PMIx_Fence", done.get());
 }
 

@@ -40,6 +40,7 @@ private:
     struct Library;
     explicit PmixClient(std::shared_ptr<Library> library);
     const std::shared_ptr<Library> library_; // also of a thread that waits in fence()
+    mutable bool isInFence_ = false;         // after a deadline: PMIx_Finalize would wait for the fence
 };
 
 } // namespace mural::launch

@@ -14,7 +14,6 @@ namespace mural {
 namespace {
 
 constexpr const char* kKey = "mural.nodes"; // the lines of starter_protocol.hpp
-constexpr int64_t kFenceMs = 20'000;
 constexpr int kPollMs = 50;
 
 volatile std::sig_atomic_t endRequested = 0;
@@ -23,7 +22,7 @@ volatile std::sig_atomic_t endRequested = 0;
 
 std::string pmixHostOf(int rank) { return "rank" + std::to_string(rank); }
 
-PmixLauncher::PmixLauncher() = default;
+PmixLauncher::PmixLauncher(int64_t timeoutMs) : timeoutMs_(timeoutMs) {}
 PmixLauncher::~PmixLauncher() = default;
 
 Result<void> PmixLauncher::publish(const std::vector<NodeTask>& tasks) {
@@ -42,7 +41,7 @@ Result<void> PmixLauncher::publish(const std::vector<NodeTask>& tasks) {
         lines += lineOf(request) + "\n";
     }
     if (auto put = client_->put(kKey, lines); !put) return put;
-    return client_->fence(Deadline::inMs(kFenceMs));
+    return client_->fence(Deadline::inMs(timeoutMs_));
 }
 
 std::vector<std::unique_ptr<RunningNode>> PmixLauncher::start(const std::vector<NodeTask>& tasks) {

@@ -16,7 +16,8 @@ std::string pmixHostOf(int rank);
 
 class PmixLauncher : public Launcher {
 public:
-    PmixLauncher();
+    // timeoutMs: until all ranks have arrived.
+    explicit PmixLauncher(int64_t timeoutMs);
     ~PmixLauncher() override;
     // The first call starts nodes, and returns null pointers for them: only their connections show their ends. Each
     // rank starts its nodes once, so later calls fail.
@@ -26,6 +27,7 @@ public:
 private:
     Result<void> publish(const std::vector<NodeTask>& tasks);
 
+    const int64_t timeoutMs_;
     bool isStarted_ = false;
     std::unique_ptr<launch::PmixClient> client_;
 };

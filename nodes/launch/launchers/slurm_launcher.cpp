@@ -173,7 +173,8 @@ std::string SlurmLauncher::whyOver() {
     for (const auto& [host, link] : links_) {
         if (!link || !link->ended()) continue;
         const std::string lines = link->recentOutput();
-        if (has(lines, "CANCELLED") || has(lines, "Force Terminated job") || has(lines, "DUE TO TIME LIMIT"))
+        const bool isCancelled = has(lines, "CANCELLED") && has(lines, "JOB " + job_.id); // not only a step
+        if (isCancelled || has(lines, "Force Terminated job") || has(lines, "DUE TO TIME LIMIT"))
             return "Slurm has ended job " + job_.id + ": " + lines;
     }
     return {};

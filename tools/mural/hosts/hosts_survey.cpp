@@ -29,7 +29,8 @@ using nlohmann::json;
 constexpr int64_t kAllMs = 14'000;
 constexpr int64_t kHelloMs = 10'000; // of the launch command, with the host's tests of its way here
 constexpr int64_t kReplyMs = 10'000;
-constexpr int64_t kRateMs = 200; // in each direction
+constexpr int64_t kRateMs = 200;         // in each direction
+constexpr int64_t kInspectionMs = 6'000; // kept for what follows the rates
 constexpr int kClockProbes = 9;
 constexpr size_t kIpv4HeaderBytes = 28;
 constexpr size_t kIpv6HeaderBytes = 48;
@@ -57,6 +58,7 @@ struct Here {
     rsp::NetworkInterface interface;
     FileDescriptor listening; // hosts test their connection to this machine here
     SurveyPlan network;
+    Deadline deadline = Deadline::inMs(kAllMs);
     std::mutex rates; // held while one host's rate is measured
 };
 
@@ -141,7 +143,9 @@ private:
 
     // One host at a time, because all share this machine's interface.
     bool measureRates() {
+        if (here_.deadline.leftNs() < kInspectionMs * kNsPerMs) return true; // many hosts: this one remains unmeasured
         const std::lock_guard lock(here_.rates);
+        if (here_.deadline.leftNs() < kInspectionMs * kNsPerMs) return true;
         const auto secret = makeSessionSecret();
         const std::string token = secret ? toHex(secret.value()).substr(0, kRateTokenBytes) : std::string();
         auto own = numericAddress(x_.network.own, 0);
@@ -155,10 +159,12 @@ private:
             x_.toHost.problem = wordIn(*listening, "problem");
             return true;
         }
-        if (auto rate = measureRate(*host, token, kRateMs); rate)
-            x_.fromHost = rate.value();
-        else
+        auto rate = measureRate(*host, token, kRateMs);
+        if (!rate) { // without a connection, the host's answer would come at the end of its deadline only
             x_.portProblem = rate.error().message;
+            return true;
+        }
+        x_.fromHost = rate.value();
         auto answer = process_->query({{"do", "rate"}}, Deadline::inMs(kReplyMs));
         if (!answer) return fail("rate", answer.error()), false;
         x_.toHost = {realIn(*answer, "bytesPerS"), wordIn(*answer, "problem")};
@@ -217,7 +223,6 @@ void runAll(std::vector<std::unique_ptr<HostExamination>>& examinations, Deadlin
 } // namespace
 
 Result<HostsSurvey> surveyHosts(const HostsPlan& plan) {
-    const Deadline deadline = Deadline::inMs(kAllMs);
     Here here;
     if (auto r = open(plan, here); !r) return r.error();
     auto sockets = ProbeSockets::open(here.groupAddress, here.interface, 0, true); // for the size of their buffers
@@ -235,7 +240,7 @@ Result<HostsSurvey> surveyHosts(const HostsPlan& plan) {
         examinations.push_back(std::make_unique<HostExamination>(here, plan.inspections[i], x));
         examinations.back()->start(probeCommand(plan.launchCommand, plan.remoteMural, x.host));
     }
-    runAll(examinations, deadline);
+    runAll(examinations, here.deadline);
     return survey;
 }
 

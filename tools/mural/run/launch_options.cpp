@@ -113,11 +113,13 @@ Result<std::string> chooseLauncher(const RunArguments& a, const launch::Environm
         c.launchCommand = "slurm";
         return takeJob(a, environment, perHost, c);
     }
-    if (job && isWithin(c.hosts, job->hosts) && (!c.hosts.empty() || a.config)) {
+    if (job && !c.hosts.empty() && isWithin(c.hosts, job->hosts) && isWithin(c.spareHosts, job->hosts)) {
         c.launchCommand = "slurm";
         return fmt::format("all hosts are in Slurm job {}", job->id);
     }
     c.launchCommand = "ssh";
+    if (c.hosts.empty() && job && a.config)
+        return std::string("the file names the hosts; --launch slurm selects the nodes of the job");
     if (c.hosts.empty()) return std::string();
     return job ? fmt::format("not all hosts are in Slurm job {}", job->id) : std::string("the nodes have hosts");
 }

@@ -1,5 +1,6 @@
 #include "tools/mural/run/slurm_allocation.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <unistd.h>
@@ -10,19 +11,22 @@
 
 namespace mural::cli {
 
-std::vector<std::string> sallocCommandOf(const std::string& mural, const std::vector<std::string>& arguments,
-                                         const std::string& options) {
+std::vector<std::string> sallocCommandOf(const std::string& mural, std::vector<std::string> arguments,
+                                         const std::vector<std::string>& program, const std::string& options) {
     // --kill-command: SIGTERM ends a run in order when its job is cancelled.
     std::vector<std::string> command{"salloc", "--job-name=mural", "--kill-command=TERM"};
     for (const std::string& word : launch::wordsOf(options)) command.push_back(word);
     command.push_back(mural);
-    bool isValue = false, isProgram = false;
+    arguments.resize(arguments.size() - std::min(arguments.size(), program.size()));
+    if (!arguments.empty() && arguments.back() == "--") arguments.pop_back();
+    bool isValue = false;
     for (const std::string& word : arguments) {
-        if (word == "--") isProgram = true;
-        const bool isOption = !isProgram && (word == "--slurm" || word.starts_with("--slurm="));
+        const bool isOption = word == "--slurm" || word.starts_with("--slurm=");
         if (!isValue && !isOption) command.push_back(word);
         isValue = isOption && word == "--slurm";
     }
+    command.emplace_back("--");
+    command.insert(command.end(), program.begin(), program.end());
     return command;
 }
 

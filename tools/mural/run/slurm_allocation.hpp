@@ -7,9 +7,9 @@
 namespace mural::cli {
 
 // Returns the salloc command that runs the same command line inside of a new job. arguments: of this process, without
-// its name. options: of salloc, separated by spaces. Pure.
-std::vector<std::string> sallocCommandOf(const std::string& mural, const std::vector<std::string>& arguments,
-                                         const std::string& options);
+// its name; the words of the program come last. options: of salloc, separated by spaces. Pure.
+std::vector<std::string> sallocCommandOf(const std::string& mural, std::vector<std::string> arguments,
+                                         const std::vector<std::string>& program, const std::string& options);
 
 // Becomes salloc, whose exit status is that of the run. Returns the exit status of a failure, which it has reported.
 int becomeSalloc(const std::vector<std::string>& command);

@@ -19,8 +19,10 @@ uint8_t cauchy(int row, int column) { return gf_inv(static_cast<uint8_t>((row + 
 
 std::array<FactorTable, 256> makeTables() {
     std::array<FactorTable, 256> tables{};
-    for (size_t factor = 0; factor < tables.size(); ++factor)
-        gf_vect_mul_init(static_cast<uint8_t>(factor), tables[factor].data());
+    for (size_t factor = 0; factor < tables.size(); ++factor) {
+        auto matrix = static_cast<uint8_t>(factor);
+        ec_init_tables(1, 1, &matrix, tables[factor].data()); // in the layout of the instructions that ISA-L selects
+    }
     return tables;
 }
 
