@@ -51,7 +51,7 @@ def main():
             command = name[len('mural-'):-len('.1')] if name.startswith('mural-') else None
             for option in command_line.options_of(mural, command):
                 options += 1
-                expect(re.search(r'^ +.*%s\b' % re.escape(option), text.split('OPTIONS')[-1], re.M), '%s lacks %s' % (name, option))
+                expect(re.search(r'^ +.*%s\b' % re.escape(option), re.split('^OPTIONS$', text, flags=re.M)[-1], re.M), '%s lacks %s' % (name, option))
             if command:
                 expect('EXIT STATUS' in text and 'EXAMPLES' in text, '%s: a section is missing' % name)
         expect(options > 100, 'only %d options were found' % options)

@@ -95,6 +95,12 @@ const OptionKind kOptions[] = {
      [] {
          return wordsOnly({"auto", "tcp"});
      }},
+    {"", "--launch",
+     [] {
+         return ValueKind{ValueSource::Command, {"auto", "local", "pmix", "slurm", "ssh"}, {}};
+     }},
+    {"", "--slurm", plain<ValueSource::Text>},
+    {"app-report", "--diff", plain<ValueSource::File>},
     {"netperf", "--stream", plain<ValueSource::Text>},
     {"netperf", "--seal",
      [] {

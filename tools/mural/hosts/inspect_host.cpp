@@ -51,13 +51,13 @@ nlohmann::json inChildJson(const std::function<nlohmann::json()>& work, int64_t 
         problem = result.text;
         return nlohmann::json::object();
     }
-    nlohmann::json json = parseJson(result.text);
-    if (!json.is_object()) {
+    nlohmann::json reply = parseJson(result.text);
+    if (!reply.is_object()) {
         problem = "the examination gave no result";
         return nlohmann::json::object();
     }
-    problem = json.value("problem", "");
-    return json;
+    problem = reply.value("problem", "");
+    return reply;
 }
 
 nlohmann::json probeJson(const char* backend) {
@@ -99,7 +99,7 @@ void inspectGl(HostFacts& f) {
 DisplayFacts inspectDisplay(const std::string& name) {
     DisplayFacts facts;
     facts.name = name;
-    const nlohmann::json json = inChildJson(
+    const nlohmann::json reply = inChildJson(
         [&]() -> nlohmann::json {
             const auto screen = readScreen(name);
             if (!screen) return {{"problem", screen.error().message}};
@@ -109,9 +109,9 @@ DisplayFacts inspectDisplay(const std::string& name) {
             return {{"width", screen.value().width}, {"height", screen.value().height}, {"monitors", monitors}};
         },
         kDisplayMs, facts.problem);
-    facts.screen.width = json.value("width", 0);
-    facts.screen.height = json.value("height", 0);
-    for (const auto& m : json.value("monitors", nlohmann::json::array()))
+    facts.screen.width = reply.value("width", 0);
+    facts.screen.height = reply.value("height", 0);
+    for (const auto& m : reply.value("monitors", nlohmann::json::array()))
         facts.screen.monitors.push_back({m.at(0), m.at(1), m.at(2), m.at(3), m.at(4), m.at(5), m.at(6)});
     return facts;
 }

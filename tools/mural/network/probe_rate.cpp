@@ -15,11 +15,11 @@ namespace {
 
 constexpr int64_t kRateConnectMs = 2'000;
 constexpr int64_t kStallMs = 2'000; // without a byte
-constexpr size_t kPieceBytes = 256 * 1024;
+constexpr size_t kRatePieceBytes = 256 * 1024;
 
 // Writes zeros for some time, then ends the direction.
 void sendZeros(int fd, int64_t durationMs) {
-    const std::vector<char> zeros(kPieceBytes);
+    const std::vector<char> zeros(kRatePieceBytes);
     for (const Deadline end = Deadline::inMs(durationMs); !end.passed();) {
         if (waitForSocket(fd, POLLOUT, end) == 0) break;
         const ssize_t n = ::send(fd, zeros.data(), zeros.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -30,7 +30,7 @@ void sendZeros(int fd, int64_t durationMs) {
 
 // Reads to the end of the other direction.
 RateMeasured readRate(int fd) {
-    std::vector<char> piece(kPieceBytes);
+    std::vector<char> piece(kRatePieceBytes);
     uint64_t bytes = 0;
     int64_t firstNs = 0;
     while (true) {
