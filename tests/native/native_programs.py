@@ -311,7 +311,7 @@ def faults_of_programs_are_reported(context):
 @cases.case
 def excluded_options_are_refused(context):
     for options, words in (("--verify", "--verify"), ("--record f.mural", "--record"), ("--gl osmesa", "osmesa"),
-                           ("--nodes @wall", "waiting nodes")):
+                           ("--nodes @wall --secret key", "waiting nodes")):
         with context.run([program(context)], options.split()) as run:
             status = run.status()
             if status != 2 or not any(words in line for line in run.standard_error):
