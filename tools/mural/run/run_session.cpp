@@ -175,6 +175,7 @@ private:
     // Reports programs that draw without the capture library: their own notes, and at most one line from an
     // examination.
     void watchBypass() {
+        if (!run_.config.nodeProgram.empty()) return; // such a session captures no program
         for (const std::string& line : bypass_.newLines()) {
             console_.error(line);
             bypassLines_.push_back(line);
