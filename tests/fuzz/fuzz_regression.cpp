@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
             seed = std::strtoull(argv[++i], nullptr, 10);
         else if (std::filesystem::is_directory(argument)) {
             for (const auto& entry : std::filesystem::directory_iterator(argument))
-                seeds.push_back(readFile(entry.path()));
+                if (entry.is_regular_file()) seeds.push_back(readFile(entry.path()));
         } else
             seeds.push_back(readFile(argument));
     }
