@@ -14,6 +14,7 @@ from harness import cases
 
 case = cases.case
 DIAGNOSTIC = re.compile(r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z (?P<role>[a-z]+(?: \d+)?)\[\d+\] (?P<topic>[a-z]+) (?P<level>debug|trace): (?P<text>.+)$")
+FROM_HOST = re.compile(r"^mural: node \d+ \([^)]*\): ")  # lines of nodes that a launch command has started
 BY_MULTICAST = ("--tiles", "2x1", "--display", "none", "--nodes", "localhost,localhost", "--stream", "rsp://239.255.77.9:4299?interface=127.0.0.1")
 NO_MULTICAST = BY_MULTICAST[:-1] + ("rsp://239.255.77.9:4299?interface=nowhere0",)
 REASON = "the stream is sent to each node over its own connection: no multicast"
@@ -21,7 +22,7 @@ REASON = "the stream is sent to each node over its own connection: no multicast"
 
 def diagnostics(run):
     """Returns the matches of all diagnostics in the run's standard error."""
-    return [match for match in map(DIAGNOSTIC.match, run.standard_error) if match]
+    return [match for match in (DIAGNOSTIC.match(FROM_HOST.sub("", line)) for line in run.standard_error) if match]
 
 
 def others(run):

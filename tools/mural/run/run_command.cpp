@@ -99,7 +99,7 @@ int runCommand(const RunOptions& options) {
     run.headCommand = {launch::ownBinary(), "head"};
     Console console(options.quiet);
     if (options.config.explain && !options.launchChoice.empty()) Console(true).error(options.launchChoice);
-    log::debug(log::Topic::Launch, options.launchChoice);
+    if (!options.launchChoice.empty()) log::debug(log::Topic::Launch, options.launchChoice);
     for (const std::string& notice : options.notices) console.say(notice);
     for (const std::string& notice : {unseenPictures(options, run), earlierPictures(run.config.out)})
         if (!notice.empty()) console.say(notice);
