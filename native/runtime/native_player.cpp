@@ -92,8 +92,8 @@ NativePlayer::~NativePlayer() {
 
 // ---- the stream
 
-// Applies the objects of a packet that is played later. The versions of a frame are known before it is drawn, and those
-// of later frames do not change them.
+// Applies the objects of a packet that is played later. The versions of a frame are known before it is drawn, and later
+// frames do not change them.
 void NativePlayer::preview(uint32_t stream, std::span<const std::byte> payload) {
     ++previewed_;
     wire::RecordWalk walk(payload);

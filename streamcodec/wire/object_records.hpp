@@ -1,5 +1,5 @@
 // Messages about distributed objects in the stream of a program with the native API (kOpObject). A message may be
-// longer than a packet: it then occupies several records, of which each states how many bytes follow in later records.
+// longer than a packet. It then occupies several records, and each states how many bytes follow in later ones.
 #pragma once
 
 #include <algorithm>

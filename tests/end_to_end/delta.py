@@ -118,7 +118,7 @@ def equal_state(context):
     if not isinstance(report, dict):
         return report
     e = left_out_of(report)
-    # Each of 48 objects makes 2 x 19 state changes, of which at least 30 have no effect on its draw. That is over 1 400
+    # Each of 48 objects makes 2 x 19 state changes, and at least 30 have no effect on its draw. That is over 1 400
     # per frame, in at least eight frames of a run.
     if e["droppedRecords"] < 8 * 1400 or e["programBytes"] - e["rawBytes"] < 0.4 * 8 / 300 * e["programBytes"]:
         return "too little was left out: %s" % e

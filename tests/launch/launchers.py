@@ -159,9 +159,9 @@ def connection_cut(lab):
         return wrong or ended(run, 143)
 
 
-@case("ssh")
-def head_killed(lab):
-    with lab.run("--nodes", "wall1,wall2", "--tiles", "2x1", frames=ENDLESS) as run:
+def end_with_the_head(lab, *options):
+    """Kills the head: its nodes end, and the run reports the loss."""
+    with lab.run(*options, frames=ENDLESS) as run:
         wrong = drawing(run)
         if wrong:
             return wrong
@@ -170,6 +170,11 @@ def head_killed(lab):
             return "nodes are left: %s" % run.processes(r"\b(starter|node)\b")
         stop(run)
         return ended(run, 143, ["the head process was lost"])
+
+
+@case("ssh")
+def head_killed(lab):
+    return end_with_the_head(lab, "--nodes", "wall1,wall2", "--tiles", "2x1")
 
 
 @case("ssh")
@@ -255,15 +260,7 @@ def job_cancelled(lab):
 
 @case("slurm")
 def head_killed(lab):
-    with lab.run("--slurm", "-N2", frames=ENDLESS) as run:
-        wrong = drawing(run)
-        if wrong:
-            return wrong
-        os.kill(run.wait_for_processes(r"mural head\b")[0], signal.SIGKILL)
-        if not no_node_left(run):
-            return "nodes are left: %s" % run.processes(r"\b(starter|node)\b")
-        stop(run)
-        return ended(run, 143, ["the head process was lost"])
+    return end_with_the_head(lab, "--slurm", "-N2")
 
 
 @case("slurm")

@@ -129,7 +129,7 @@ HELPER = """        node { host "cave4" pipe { window { viewport [ 0 0 320 240 ]
 
 @cases.case
 def rooms_are_exact(context):
-    """A CAVE file: each wall shows what is behind it, and nodes that share a wall show the same pixels."""
+    """A CAVE file: each wall shows the scene behind it, and nodes that share a wall show the same pixels."""
     path = os.path.join(TOP, "configs", "cave.eqc")
     with open(path, encoding="ascii") as file:
         text = file.read()

@@ -143,7 +143,7 @@ def batch(doctor, network, names):
     for host, fault in faults.items():
         if fault.heal:
             fault.heal(network, host)
-    # Without EGL another GL draws, whose driver and version then also differ from those of the other hosts.
+    # Without EGL another GL draws, so driver and version also differ from the other hosts.
     found = {host: [name for name in names if name != 'GL version'] for host, names in found.items()}
     wanted = {host: fault.wanted for host, fault in faults.items()}
     return wrong or (None if found == wanted else 'found %s instead of %s' % (found, wanted))

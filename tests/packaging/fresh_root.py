@@ -7,6 +7,7 @@
 """
 import glob
 import os
+import pwd
 import shutil
 import subprocess
 import sys
@@ -31,7 +32,7 @@ for device in null zero full random urandom tty; do touch "$root/dev/$device"; m
 exec chroot "$root" "$@"
 """
 # Files of apt, dpkg and the shared caches that every installation changes.
-CHANGED = ('/var/cache/', '/var/log/', '/var/lib/apt/', '/var/lib/dpkg/', '/etc/ld.so.cache', '/tmp/', '/home/', '/root/', '/proc/', '/dev/', '/sys/', '/run/')
+CHANGED = ('/var/cache/', '/var/log/', '/var/lib/apt/', '/var/lib/dpkg/', '/etc/ld.so.cache', '/tmp/', '/home/', pwd.getpwuid(0).pw_dir + '/', '/proc/', '/dev/', '/sys/', '/run/')
 
 failures = []
 measured = []

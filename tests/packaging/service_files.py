@@ -70,7 +70,7 @@ def main():
     build = sys.argv[1]
     service = tree.parse(os.path.join(PACKAGING, 'firewalld', 'mural.xml')).getroot()
     expect(service.tag == 'service' and {port.get('port') for port in service.findall('port')} == {'4276', '4277', '4278', '4279'}, 'firewalld: the ports')
-    for script in ('slurm/mural-wall.sbatch', 'debian/mural/prerm', 'debian/mural/postrm', 'completion/mural.bash'):
+    for script in ('../configs/launch/wall.sbatch', '../configs/launch/wall-pmix.sbatch', 'debian/mural/prerm', 'debian/mural/postrm', 'completion/mural.bash'):
         status, out = run('bash', '-n', os.path.join(PACKAGING, script))
         expect(status == 0, '%s: %s' % (script, out))
     exposure = 'not tested'

@@ -1,6 +1,6 @@
-// Messages over a byte stream, readable and writable only for the two owners of a shared secret: TLS 1.3 (RFC 8446)
-// with an external pre-shared key and an ephemeral X25519 exchange (psk_dhe_ke), implemented by OpenSSL. Has no
-// sockets: bytes in, bytes out.
+// Messages over a byte stream, readable and writable only for the two owners of a shared secret. The protocol is
+// TLS 1.3 (RFC 8446) with an external pre-shared key and an ephemeral X25519 exchange (psk_dhe_ke). OpenSSL implements
+// it. Has no sockets: bytes in, bytes out.
 //
 // The member is the TLS client, and its name is the identity of the key. The name selects the secret at the host and is
 // not hidden. Certificates are not used. Within TLS a message is a u32 little-endian length and its bytes.

@@ -118,7 +118,7 @@ public:
     // The framebuffer that apply() binds. To return to it from framebuffers of the renderer.
     [[nodiscard]] unsigned framebuffer() const;
 
-    // Whether context and sizes equal those of this node's previous frame, so that caches that depend on them hold.
+    // Whether context and sizes are as in this node's previous frame, so that caches that depend on them hold.
     [[nodiscard]] bool sameAsBefore() const;
 
     // Returns the state object of the application with this type and name, as it was when the frame began. Valid until

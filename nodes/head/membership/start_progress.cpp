@@ -9,7 +9,7 @@ namespace mural {
 namespace {
 
 constexpr std::array<const char*, kStartSteps> kNames = {"launched", "connected", "checked", "GL ready", "first frame"};
-// What a node waits for before each step.
+// The cause of a node's wait before each step.
 constexpr std::array<const char*, kStartSteps> kWaits = {"its process", "its connection", "the check of its version",
                                                          "its GL", "its first frame"};
 

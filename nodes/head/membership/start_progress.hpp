@@ -43,8 +43,8 @@ private:
         std::array<int64_t, kStartSteps> atNs{}; // 0: not reached
     };
     [[nodiscard]] static bool isMissing(const Node& node, StartStep wanted);
-    // The time from which nodes are expected to take this step: that of the last connection for GL, that of another
-    // node's frame for the first frame. Requires mutex_.
+    // Returns the time from which nodes are expected to take this step: for GL, when the last node connected; for the
+    // first frame, when another node drew one. Requires mutex_.
     [[nodiscard]] int64_t expectedSinceNs(StartStep wanted) const;
 
     mutable std::mutex mutex_; // guards the members below

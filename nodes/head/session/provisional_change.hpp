@@ -1,5 +1,4 @@
-// A change that reverts by itself unless somebody keeps it: a layout may hide the picture from the person who would
-// undo it.
+// A change that reverts by itself unless it is kept. A layout may hide the picture from the person who would undo it.
 #pragma once
 
 #include <chrono>

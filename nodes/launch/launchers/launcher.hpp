@@ -28,7 +28,7 @@ public:
     // Starts nodes concurrently, without waiting for them. A node that cannot be started has ended. Call from one
     // thread, which outlives the nodes.
     virtual std::vector<std::unique_ptr<RunningNode>> start(const std::vector<NodeTask>& tasks) = 0;
-    // False if the names of its hosts are not those of machines: their routes are unknown.
+    // False if its hosts have no names of machines, so that their routes are unknown.
     [[nodiscard]] virtual bool knowsHosts() const { return true; }
     // Returns why no node can be started any more, such as the end of a batch job. Empty: nodes can be started.
     [[nodiscard]] virtual std::string whyOver() { return {}; }

@@ -37,8 +37,8 @@ Result<SlurmJob> slurmJobOf(const launch::Environment& environment) {
     return job;
 }
 
-// --wait=0 and --kill-on-bad-exit=0: the others continue after the end of a task. --no-kill: and after that of a host.
-// --overlap: the job's other steps may use the same processors.
+// The other tasks continue after the end of a task (--wait=0, --kill-on-bad-exit=0) and after the loss of a host
+// (--no-kill). The job's other steps may use the same processors (--overlap).
 std::vector<std::string> srunCommandOf(const std::string& job, const std::vector<std::string>& hosts,
                                        const NodeBinary& binary) {
     const std::string count = std::to_string(hosts.size());

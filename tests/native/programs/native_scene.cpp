@@ -58,7 +58,7 @@ struct Item {
 
 std::string queueOf(uint64_t frame) { return "frame " + std::to_string(frame); }
 
-// Triangles that intersect those of all other chunks.
+// Triangles that intersect the triangles of all other chunks.
 std::vector<Vertex> verticesOf(int chunk) {
     std::vector<Vertex> vertices;
     uint32_t random = 12345u + static_cast<uint32_t>(chunk) * 7919u;

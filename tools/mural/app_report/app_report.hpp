@@ -38,7 +38,7 @@ struct AppReport {
     std::string sentence;    // reason of the verdict
     std::string recommended; // command line; empty: none
     std::vector<Section> sections;
-    nlohmann::json runs = nlohmann::json::array(); // what each run printed and reported
+    nlohmann::json runs = nlohmann::json::array(); // output and report of each run
     std::string nativePicture, wallPicture;        // PNG files; empty: none
 };
 

@@ -10,7 +10,7 @@ Section roundTripFacts(const AppMeasured& measured);
 Section trafficFacts(const AppMeasured& measured);
 Section speedFacts(const AppMeasured& measured);
 
-// Round trips of the program itself, per frame: without those of --verify.
+// Round trips of the program itself per frame; --verify adds none.
 double roundTripsPerFrame(const AppMeasured& measured);
 
 } // namespace mural::cli

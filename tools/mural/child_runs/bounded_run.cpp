@@ -45,7 +45,7 @@ public:
     void started() { its_ = FileDescriptor(); }
     [[nodiscard]] int fd() const { return own_.get(); }
 
-    // Reads what is there.
+    // Reads the available bytes without waiting.
     void drain() {
         char part[65536];
         for (size_t i = 0; i < kReadsPerTurn; ++i) {

@@ -1,4 +1,4 @@
-// What a host's own process finds out about its machine for `mural doctor --nodes`, and the lines that carry it.
+// Facts of a machine that its own process collects for `mural doctor --nodes`, and their lines.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ struct HostFacts {
 
 // Parts of the examination that the doctor chooses.
 struct InspectionPlan {
-    std::vector<std::string> displays; // X displays; empty: that of the environment, if any
+    std::vector<std::string> displays; // X displays; empty: DISPLAY, if it is set
     std::string folder;                // for recordings; empty: the home folder
 };
 

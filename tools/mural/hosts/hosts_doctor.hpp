@@ -1,4 +1,4 @@
-// Runs `mural doctor --nodes`: examines all hosts of a wall at once, and prints what differs and what is wrong.
+// Runs `mural doctor --nodes`: examines all hosts of a wall at once, and prints differences and faults.
 #pragma once
 
 #include <string>

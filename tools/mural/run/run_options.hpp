@@ -38,7 +38,7 @@ struct RunArguments {
     OptionText config, canvas, projection, modelUnit, delta, cacheSize;
     std::vector<std::string> layouts;
     bool allLocal = false, printConfig = false;
-    bool startsNodes = false; // a new session: without nodes in the options, those of the batch job
+    bool startsNodes = false; // a new session: without nodes in the options, the batch job gives them
     OptionText stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
     OptionText localNodes, frames, latency, report, record, overlay;
     std::string verify; // empty: not given

@@ -11,7 +11,8 @@ namespace mural::cli {
 std::vector<std::string> sallocCommandOf(const std::string& mural, std::vector<std::string> arguments,
                                          const std::vector<std::string>& program, const std::string& options);
 
-// Becomes salloc, whose exit status is that of the run. Returns the exit status of a failure, which it has reported.
+// Replaces this process with salloc, which returns the exit status of the run. Returns the exit status of a failure,
+// which it has reported.
 int becomeSalloc(const std::vector<std::string>& command);
 
 } // namespace mural::cli

@@ -27,7 +27,7 @@ namespace {
 constexpr int64_t kSilenceMs = 30'000;
 constexpr size_t kMaxLine = 1 << 20;
 
-// The name of this host for the head: in a batch job that of its host list.
+// The name of this host for the head; in a batch job, its name in the host list.
 std::string hostName() {
     if (const char* const node = std::getenv("SLURMD_NODENAME"); node != nullptr && *node != '\0') return node;
     std::array<char, 256> name{};

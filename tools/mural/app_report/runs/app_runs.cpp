@@ -22,7 +22,7 @@ constexpr int64_t kOverheadMs = 14'000; // of all runs together; the rest of the
 constexpr int64_t kLeastMs = 1'500;     // a shorter run shows nothing
 constexpr double kPictureShare = 0.6;   // part of the native run after which its window is read
 constexpr double kExaminedShare = 0.6;  // part of a run after which its libraries are examined
-// Frames of which one is shown in the report: the last of them that the wall reaches.
+// The report shows the last of these frames that the wall reaches.
 constexpr const char* kSavedFrames = "1,5,20,60,150,300";
 
 nlohmann::json jsonOfFile(const std::string& path) {
