@@ -60,6 +60,7 @@ class Doctor:
         report = json.loads(done.stdout)
         names = {address: name for name, address in HOSTS.items()}
         found = {}
+        self.texts = [c['found'] for host in report['hosts'] for c in host['checks'] if c['health'] != 'ok']
         worst = 0
         for host in report['hosts']:
             wrong = [c for c in host['checks'] if c['health'] != 'ok']
@@ -163,7 +164,8 @@ def text(doctor, _):
 
 
 def unknown_host(doctor, _):
-    return doctor.expect({'10.77.0.99': ['start']}, hosts=[HOSTS['wall1'], '10.77.0.99'])
+    wrong = doctor.expect({'10.77.0.99': ['start']}, hosts=[HOSTS['wall1'], '10.77.0.99'])
+    return wrong or (None if any('Could not resolve hostname' in text for text in doctor.texts) else 'the reason is missing: %s' % doctor.texts)
 
 
 def screen(doctor, _):

@@ -62,16 +62,21 @@ std::string ProbeProcess::describeEnd() const {
     return process_.describeEnd() + (words.empty() ? "" : ", " + words);
 }
 
+// The end of the process explains a broken channel.
+Error ProbeProcess::explained(const Error& why) {
+    const bool ended = process_.waitUntil(Deadline::inMs(200));
+    return ended ? Error{"the test process ended: " + describeEnd()} : why;
+}
+
 Result<void> ProbeProcess::send(const nlohmann::json& words) {
-    return lines_.write(jsonText(words), Deadline::inMs(kSendMs));
+    auto written = lines_.write(jsonText(words), Deadline::inMs(kSendMs));
+    if (!written) return explained(written.error());
+    return written;
 }
 
 Result<nlohmann::json> ProbeProcess::receive(Deadline deadline) {
     auto line = lines_.read(deadline);
-    if (!line) {
-        const bool ended = process_.waitUntil(Deadline::inMs(200));
-        return Error{ended ? "the test process ended: " + describeEnd() : line.error().message};
-    }
+    if (!line) return explained(line.error());
     auto answer = parseJson(*line);
     if (!answer.is_object())
         return Error{"invalid reply \"" + line->substr(0, 80) + "\"; check the host's shell for startup output"};
