@@ -146,6 +146,7 @@ TEST(CreateLauncher, needsAJobForSlurm) {
 
 // A link whose command is a shell script in the role of ssh and a starter.
 std::shared_ptr<launch::StarterLink> linkOf(const std::string& script) {
+    signal(SIGPIPE, SIG_IGN); // as in the head
     launch::StarterCommand command;
     command.arguments = {"sh", "-c", script};
     command.environment = launch::Environment::current().entries();

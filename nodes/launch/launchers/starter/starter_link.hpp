@@ -37,7 +37,7 @@ struct StarterCommand {
 // Thread-safe, except start(). Nodes share it: it ends with its last user.
 class StarterLink : public std::enable_shared_from_this<StarterLink> {
 public:
-    // Call from a thread that outlives it (PR_SET_PDEATHSIG).
+    // Call from a thread that outlives it (PR_SET_PDEATHSIG). The process must ignore SIGPIPE.
     static Result<std::shared_ptr<StarterLink>> start(StarterCommand command);
     StarterLink(const StarterLink&) = delete;
     StarterLink& operator=(const StarterLink&) = delete;
