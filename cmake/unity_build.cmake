@@ -22,7 +22,7 @@ if(MURAL_SANITIZE)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 elseif(MURAL_UNITY)
   set(CMAKE_UNITY_BUILD ON)
-  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 endif()
 # GCC treats the sources of a unity batch as headers and warns about their anonymous namespaces.
 add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)

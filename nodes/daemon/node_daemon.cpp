@@ -20,9 +20,9 @@ namespace {
 
 constexpr int kBacklog = 32;
 constexpr unsigned kMaxConnections = 64;
-constexpr int64_t kProofMs = 5'000; // for the proof of the secret and for the command
+constexpr int64_t kHeadProofMs = 5'000; // for the proof of the secret and for the command
 constexpr int64_t kAnswerMs = 5'000;
-constexpr int64_t kEndMs = 10'000; // for all commands, when the daemon stops
+constexpr int64_t kCommandsEndMs = 10'000; // for all commands, when the daemon stops
 
 Result<FileDescriptor> listenAt(const std::string& text) {
     auto where = splitHostPort(text);
@@ -79,13 +79,13 @@ void NodeDaemon::take(FileDescriptor socket, const std::string& peer) {
     const ChannelSecret secret = options_.secret;
     ChannelSocket channel(std::move(socket),
                           SecureChannel::accepting([secret](const std::string&) { return std::optional(secret); }));
-    if (auto r = channel.open(Deadline::inMs(kProofMs)); !r)
+    if (auto r = channel.open(Deadline::inMs(kHeadProofMs)); !r)
         return log::warning(log::Topic::Daemon, peer, " was not accepted: ", r.error().message);
     const auto refuse = [&](const std::string& why) {
         (void)channel.send(textMessage(NodeMessageKind::Refused, why), Deadline::inMs(kAnswerMs));
         log::warning(log::Topic::Daemon, peer, " was rejected: ", why);
     };
-    auto command = channel.receive(Deadline::inMs(kProofMs));
+    auto command = channel.receive(Deadline::inMs(kHeadProofMs));
     if (!command) return log::warning(log::Topic::Daemon, peer, " sent no command: ", command.error().message);
     auto arguments = commandArguments(*command);
     if (!arguments || !isAllowedCommand(*arguments))
@@ -128,7 +128,7 @@ Result<void> NodeDaemon::serve(int stopFd) {
         }
     }
     stop_ = true;
-    for (const Deadline end = Deadline::inMs(kEndMs); connections_ > 0 && !end.passed();) poll(nullptr, 0, 10);
+    for (const Deadline end = Deadline::inMs(kCommandsEndMs); connections_ > 0 && !end.passed();) poll(nullptr, 0, 10);
     return result;
 }
 

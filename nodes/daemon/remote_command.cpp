@@ -18,7 +18,7 @@ namespace mural {
 namespace {
 
 constexpr int kSliceMs = 50;
-constexpr int64_t kSendMs = 10'000;
+constexpr int64_t kOutputSendMs = 10'000;
 constexpr int64_t kEndMs = 2'000;       // limit for a process whose head is gone
 constexpr size_t kMaxWaiting = 1 << 20; // buffered bytes for standard input
 
@@ -104,7 +104,7 @@ private:
                 from = FileDescriptor();
                 return {};
             }
-            if (auto r = channel_.send({kind, {piece.begin(), piece.begin() + n}}, Deadline::inMs(kSendMs)); !r)
+            if (auto r = channel_.send({kind, {piece.begin(), piece.begin() + n}}, Deadline::inMs(kOutputSendMs)); !r)
                 return r;
         }
         return {};
@@ -113,7 +113,7 @@ private:
         const std::string how = process_.describeEnd();
         NodeMessage message = textMessage(NodeMessageKind::Ended, how);
         message.body.insert(message.body.begin(), static_cast<std::byte>(process_.exitStatus()));
-        (void)channel_.send(message, Deadline::inMs(kSendMs));
+        (void)channel_.send(message, Deadline::inMs(kOutputSendMs));
         return how;
     }
 

@@ -10,7 +10,7 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kConnectMs = 10'000;
+constexpr int64_t kBarrierConnectMs = 10'000;
 
 } // namespace
 
@@ -33,7 +33,7 @@ void BarrierPart::follow(const std::string& host, uint16_t port) {
         return log::warning(log::Topic::Barrier,
                             "the head sent an invalid secret for the swap barrier: ", secret.error().message,
                             "; windows of this node show frames without the barrier");
-    auto follower = BarrierFollower::connect(rank_, secret.value(), host, port, Deadline::inMs(kConnectMs));
+    auto follower = BarrierFollower::connect(rank_, secret.value(), host, port, Deadline::inMs(kBarrierConnectMs));
     if (follower)
         barrier_ = std::move(*follower);
     else

@@ -7,7 +7,7 @@
 namespace mural {
 namespace {
 
-constexpr int64_t kJoinMs = 10'000;
+constexpr int64_t kGroupJoinMs = 10'000;
 constexpr int64_t kSliceMs = 50;               // interval of the check for goOn()
 constexpr size_t kMaxBytes = size_t{64} << 20; // far above the head's output before goOn()
 constexpr size_t kReadBytes = size_t{64} << 10;
@@ -23,7 +23,7 @@ StagedMulticastJoin::~StagedMulticastJoin() {
 }
 
 void StagedMulticastJoin::work() {
-    auto group = rsp::Group::join(options_, Deadline::inMs(kJoinMs));
+    auto group = rsp::Group::join(options_, Deadline::inMs(kGroupJoinMs));
     if (!group) return failed_(group.error().message);
     group_ = std::move(*group);
     while (!stop_ && come_.size() < kMaxBytes)

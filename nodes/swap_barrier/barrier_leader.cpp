@@ -14,7 +14,7 @@ namespace {
 
 constexpr int64_t kSliceMs = 100; // poll interval for late members and for the end
 constexpr int64_t kProofPatienceMs = 5000;
-constexpr int64_t kSendMs = 1000;
+constexpr int64_t kGoSendMs = 1000;
 constexpr int64_t kRestMs = 1000; // for the rest of a message
 constexpr int64_t kWakeNs = 50'000;
 constexpr int64_t kReportNs = kNsPerS; // interval of diagnostics
@@ -125,7 +125,7 @@ void BarrierLeader::apply(const BarrierRounds::Step& step) {
             }
             Member& member = members_.at(rank);
             const BarrierGo go{release.key, member.readySentNs, member.arrivedNs, monotonicNowNs(), showNs};
-            if (member.connection->write(encode(go), Deadline::inMs(kSendMs)))
+            if (member.connection->write(encode(go), Deadline::inMs(kGoSendMs)))
                 member.connection->flush();
             else
                 member.connection->close(); // its thread reports the loss

@@ -16,7 +16,7 @@ template <class F> void find(void* handle, const char* name, F& into, std::strin
     if (!into && why.empty()) why = std::string("libavahi-client has no ") + name;
 }
 
-Opened open() {
+Opened openAvahi() {
     Opened o;
     // It brings libavahi-common along. Never closed: threads may be in it.
     void* handle = dlopen("libavahi-client.so.3", RTLD_NOW | RTLD_LOCAL);
@@ -53,7 +53,7 @@ Opened open() {
 } // namespace
 
 const AvahiLibrary* AvahiLibrary::get(std::string& why) {
-    static const Opened opened = open();
+    static const Opened opened = openAvahi();
     why = opened.why;
     return why.empty() ? &opened.avahi : nullptr;
 }

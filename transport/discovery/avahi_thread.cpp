@@ -10,7 +10,7 @@ namespace mural {
 
 namespace {
 
-constexpr int kSliceMs = 100;
+constexpr int kPollSliceMs = 100;
 constexpr int64_t kAgainMs = 5'000; // the daemon may start later
 constexpr auto kMaxEnd = std::chrono::seconds(1);
 
@@ -43,7 +43,7 @@ void talk(const AvahiLibrary& avahi, const std::shared_ptr<Shared>& shared, cons
     int code = 0;
     if (AvahiClient* client =
             avahi.clientNew(avahi.simplePollGet(poll), static_cast<AvahiClientFlags>(0), clientChanged, &c, &code)) {
-        while (!shared->stop && !c.failed && avahi.simplePollIterate(poll, kSliceMs) == 0) {}
+        while (!shared->stop && !c.failed && avahi.simplePollIterate(poll, kPollSliceMs) == 0) {}
         lost();
         avahi.clientFree(client);
     } else {
@@ -59,7 +59,7 @@ void run(const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready,
     while (avahi && !shared->stop) {
         talk(*avahi, shared, ready, lost);
         for (const Deadline again = Deadline::inMs(kAgainMs); !shared->stop && !again.passed();)
-            std::this_thread::sleep_for(std::chrono::milliseconds(kSliceMs));
+            std::this_thread::sleep_for(std::chrono::milliseconds(kPollSliceMs));
     }
     const std::lock_guard lock(shared->mutex);
     shared->ended = true;

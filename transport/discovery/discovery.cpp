@@ -16,7 +16,7 @@ namespace {
 // Searches are repeated at growing intervals, because datagrams may be lost.
 constexpr int64_t kFirstPauseMs = 100;
 constexpr int64_t kMaxPauseMs = 1'000;
-constexpr int64_t kSliceMs = 50;
+constexpr int64_t kWaitSliceMs = 50;
 
 // Shared with Avahi's thread, which may outlive the search.
 struct Found {
@@ -63,7 +63,7 @@ Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline,
             again = Deadline::inMs(pauseMs);
             pauseMs = std::min(2 * pauseMs, kMaxPauseMs);
         }
-        const Deadline slice = Deadline::inMs(sooner(deadline, kSliceMs));
+        const Deadline slice = Deadline::inMs(sooner(deadline, kWaitSliceMs));
         if (sockets) {
             (void)sockets->listen(slice, -1, [&](const Announcement& a, const std::string& from) {
                 const std::lock_guard lock(found->mutex);

@@ -12,7 +12,7 @@ namespace mural::fabric {
 namespace {
 
 constexpr size_t kPageBytes = 4096;
-constexpr int64_t kSliceMs = 1000; // bounds the damage of a provider that misses a wake-up
+constexpr int64_t kWaitSliceMs = 1000; // bounds the damage of a provider that misses a wake-up
 
 Error cannot(const std::string& provider, const char* what, long code) {
     return Error{"fabric (" + provider + "): cannot " + what + ": " + codeText(code) +
@@ -160,7 +160,7 @@ bool Endpoint::mayExpectWakeUp() {
 
 bool Endpoint::sleep(Deadline deadline) {
     pollfd polled[] = {{queueDescriptor_, POLLIN, 0}, {events_.descriptor(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
-    const int64_t leftNs = deadline.leftNs(kSliceMs * kNsPerMs);
+    const int64_t leftNs = deadline.leftNs(kWaitSliceMs * kNsPerMs);
     // interrupted: the caller polls again
     const int ready = poll(polled, 3, static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
     if (polled[2].revents != 0) {

@@ -11,7 +11,7 @@ namespace mural::fabric {
 namespace {
 
 constexpr size_t kMaxDataBytes = 256; // largest data of a connection request
-constexpr int64_t kSliceMs = 100;     // some providers progress only when polled
+constexpr int64_t kPollSliceMs = 100; // some providers progress only when polled
 
 struct alignas(fi_eq_cm_entry) EventBytes {
     std::byte bytes[sizeof(fi_eq_cm_entry) + kMaxDataBytes];
@@ -76,7 +76,7 @@ Event EventQueue::next(Deadline deadline) {
         if (event.kind != Event::Kind::None || deadline.passed()) return event;
         fid* waited = &queue_->fid;
         if (fi_trywait(fabric_.get(), &waited, 1) != 0) continue;
-        const int64_t leftMs = deadline.leftNs(kSliceMs * kNsPerMs) / kNsPerMs + 1;
+        const int64_t leftMs = deadline.leftNs(kPollSliceMs * kNsPerMs) / kNsPerMs + 1;
         waitForSocket(descriptor_, POLLIN, Deadline::inMs(leftMs));
     }
 }

@@ -22,7 +22,7 @@ namespace {
 constexpr int kCompressionLevel = 1;
 constexpr int kFilter = PNG_FILTER_UP;
 // Bounds the allocation for a corrupt header. The largest OpenGL framebuffer is smaller.
-constexpr png_uint_32 kLargestSide = 1U << 17;
+constexpr png_uint_32 kLargestPngSide = 1U << 17;
 constexpr uint64_t kLargestPixels = uint64_t{1} << 30;
 
 struct File {
@@ -82,7 +82,7 @@ std::vector<png_bytep> rowsFromTop(const std::byte* data, int height, size_t row
 bool encode(png_structp png, png_infop info, Trouble* trouble, int width, int height, png_bytepp rows) {
     if (setjmp(png_jmpbuf(png)) != 0) return false;
     png_set_write_fn(png, trouble, writeBytes, flushBytes);
-    png_set_user_limits(png, kLargestSide, kLargestSide);
+    png_set_user_limits(png, kLargestPngSide, kLargestPngSide);
     png_set_compression_level(png, kCompressionLevel);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, kFilter);
     png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGB,
@@ -121,7 +121,7 @@ int writeComplete(FILE* stream, const Picture& picture, Trouble& trouble) {
 bool readHeader(png_structp png, png_infop info, Trouble* trouble) {
     if (setjmp(png_jmpbuf(png)) != 0) return false;
     png_set_read_fn(png, trouble, readBytes);
-    png_set_user_limits(png, kLargestSide, kLargestSide);
+    png_set_user_limits(png, kLargestPngSide, kLargestPngSide);
     png_read_info(png, info);
     png_set_expand(png);
     png_set_strip_16(png);

@@ -11,7 +11,7 @@ namespace mural {
 
 namespace {
 
-constexpr int kLargestSide = 32767; // limit of X windows and coordinates
+constexpr int kLargestWindowSide = 32767; // limit of X windows and coordinates
 constexpr uint8_t kBadWindow = 3;
 constexpr uint8_t kBadMatch = 8;
 constexpr uint8_t kBadDrawable = 9;
@@ -170,8 +170,8 @@ Result<void> AppWindow::findConverter(xcb_visualid_t visualId, int depth) {
 }
 
 Result<AppWindow::Outcome> AppWindow::showOnce(const Picture& picture, Deadline deadline) {
-    const int width = std::min(picture.width, kLargestSide);
-    const int height = std::min(picture.height, kLargestSide);
+    const int width = std::min(picture.width, kLargestWindowSide);
+    const int height = std::min(picture.height, kLargestWindowSide);
     const size_t sizeBytes = converter_->rowBytes(width) * static_cast<size_t>(height);
     Result<void> put = sharedFor(sizeBytes, deadline) ? putShared(picture, width, height, deadline)
                                                       : putInPieces(picture, width, height, deadline);

@@ -10,14 +10,14 @@ namespace mural::cli {
 
 namespace {
 
-struct Method {
+struct ProgramMethod {
     const char* name;
     Words options;
     Bound bound;
     bool quick;
 };
 
-std::vector<Method> methods() {
+std::vector<ProgramMethod> programMethods() {
     const Bound exact = Bound::exact(), notPromised{}; // the error of tiling lean depends on the program's drawing
     return {
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, true},
@@ -52,7 +52,7 @@ Result<MeasuredError> errorOfReport(const std::string& path) {
 
 void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick,
                     std::vector<AccuracyRow>& rows) {
-    for (const Method& method : methods()) {
+    for (const ProgramMethod& method : programMethods()) {
         if (quick && !method.quick) continue;
         reportProgress(method.name);
         AccuracyRow row{"Decompositions", method.name, "its own context", {}, method.bound, {}};

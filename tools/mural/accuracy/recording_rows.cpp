@@ -14,10 +14,10 @@ namespace mural::cli {
 
 namespace {
 
-constexpr size_t kWholeFrames = 2; // per window; afterwards the reads of the program are determined
-constexpr int kMaxSamples = 16;    // reference for antialiasing
+constexpr size_t kFramesBeforeReads = 2; // per window; afterwards the reads of the program are determined
+constexpr int kMaxSamples = 16;          // reference for antialiasing
 
-struct Method {
+struct RecordingMethod {
     std::string name;
     Words options;
     Bound bound;
@@ -27,9 +27,9 @@ struct Method {
     bool otherPixels = false; // nodes draw other pixels than shown, except in the first frames
 };
 
-std::vector<Method> methods() {
+std::vector<RecordingMethod> recordingMethods() {
     const Bound exact = Bound::exact(), notPromised{};
-    std::vector<Method> all{
+    std::vector<RecordingMethod> all{
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, false, 1, true},
         {"DB, 3 ranges", {"--db", "3"}, exact, false, 1, true},
         {"DPlex, 3 phases", {"--dplex", "3"}, exact, false, 1, false},
@@ -102,7 +102,7 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         return;
     }
     const auto many = replayed(runs, recording, {"--subpixel", std::to_string(kMaxSamples)});
-    for (const Method& method : methods()) {
+    for (const RecordingMethod& method : recordingMethods()) {
         if (quick && !method.quick) continue;
         reportProgress(name + ": " + method.name);
         const Result<Replayed>& wanted = method.manySamples ? many : one;
@@ -115,12 +115,12 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         else if (got.value().pictures.size() != wanted.value().pictures.size())
             row.failure = fmt::format("{} pictures received, {} expected", got.value().pictures.size(),
                                       wanted.value().pictures.size());
-        else if (method.otherPixels && got.value().pictures.size() <= kWholeFrames)
+        else if (method.otherPixels && got.value().pictures.size() <= kFramesBeforeReads)
             row.failure = fmt::format("the first {} frames do not count, and there are no others; record more frames",
-                                      kWholeFrames);
+                                      kFramesBeforeReads);
         if (row.failure.empty()) {
             const Replayed &a = wanted.value(), &b = got.value();
-            for (size_t p = method.otherPixels ? kWholeFrames : 0; p < a.pictures.size(); ++p)
+            for (size_t p = method.otherPixels ? kFramesBeforeReads : 0; p < a.pictures.size(); ++p)
                 row.error.add(errorOf(a.pictures[p].view(), b.pictures[p].view()));
             const double pixels = static_cast<double>(std::max<int64_t>(b.frames, 1)) * b.pictures.front().width() *
                                   b.pictures.front().height();

@@ -9,7 +9,7 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int kWidth = 1021, kHeight = 767, kColumns = 7, kRows = 5; // tiles that do not divide the size
+constexpr int kPictureWidth = 1021, kPictureHeight = 767, kColumns = 7, kRows = 5; // tiles that do not divide the size
 const Frustum kWhole{-0.83, 0.91, -0.47, 0.52, 0.1, 100};
 
 // A synthetic picture as a function of the position: waves that change by up to a sixth of full brightness per pixel,
@@ -32,11 +32,11 @@ template <class Real> AccuracyRow transformRow(const char* what, const Bound& bo
     int64_t tookNs = 0;
     std::vector<Real> xs, ys;
     for (int t = 0; t < kColumns * kRows; ++t) {
-        const int x0 = kWidth * (t % kColumns) / kColumns, x1 = kWidth * (t % kColumns + 1) / kColumns,
-                  y0 = kHeight * (t / kColumns) / kRows, y1 = kHeight * (t / kColumns + 1) / kRows;
+        const int x0 = kPictureWidth * (t % kColumns) / kColumns, x1 = kPictureWidth * (t % kColumns + 1) / kColumns,
+                  y0 = kPictureHeight * (t / kColumns) / kRows, y1 = kPictureHeight * (t / kColumns + 1) / kRows;
         const int64_t beganNs = threadCpuNowNs();
-        const Frustum f = compound::partOf(
-            kWhole, {1. * x0 / kWidth, 1. * y0 / kHeight, 1. * (x1 - x0) / kWidth, 1. * (y1 - y0) / kHeight});
+        const Frustum f = compound::partOf(kWhole, {1. * x0 / kPictureWidth, 1. * y0 / kPictureHeight,
+                                                    1. * (x1 - x0) / kPictureWidth, 1. * (y1 - y0) / kPictureHeight});
         xs.clear();
         ys.clear();
         for (int y = 0; y < y1 - y0; ++y)
@@ -49,15 +49,15 @@ template <class Real> AccuracyRow transformRow(const char* what, const Bound& bo
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x, ++i) {
                 const double wanted =
-                    std::round(255 * brightness(placeOf<long double>(kWhole.left, kWhole.right, x, kWidth),
-                                                placeOf<long double>(kWhole.bottom, kWhole.top, y, kHeight)));
+                    std::round(255 * brightness(placeOf<long double>(kWhole.left, kWhole.right, x, kPictureWidth),
+                                                placeOf<long double>(kWhole.bottom, kWhole.top, y, kPictureHeight)));
                 const double d = std::round(255 * brightness(xs[i], ys[i])) - wanted;
                 row.error.addValue(d);
                 ++row.error.pixels;
                 row.error.differing += d != 0;
             }
     }
-    row.cost = Cost{static_cast<double>(tookNs) / (kWidth * kHeight), 2 * sizeof(Real)};
+    row.cost = Cost{static_cast<double>(tookNs) / (kPictureWidth * kPictureHeight), 2 * sizeof(Real)};
     return row;
 }
 

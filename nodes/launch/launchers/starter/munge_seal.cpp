@@ -9,7 +9,7 @@
 namespace mural::launch {
 namespace {
 
-constexpr int kSuccess = 0;
+constexpr int kMungeSuccess = 0;
 constexpr int kUidRestriction = 9; // MUNGE_OPT_UID_RESTRICTION
 
 } // namespace
@@ -57,9 +57,10 @@ Result<std::string> MungeSeal::seal(const std::string& text) const {
     if (context == nullptr) return Error{"MUNGE has no memory"};
     char* credential = nullptr;
     int code = library_->setOption(context, kUidRestriction, geteuid());
-    if (code == kSuccess) code = library_->encode(&credential, context, text.data(), static_cast<int>(text.size()));
+    if (code == kMungeSuccess)
+        code = library_->encode(&credential, context, text.data(), static_cast<int>(text.size()));
     library_->destroyContext(context);
-    if (code != kSuccess) return library_->failed("seal", code);
+    if (code != kMungeSuccess) return library_->failed("seal", code);
     std::string sealed = credential;
     std::free(credential);
     return sealed;
@@ -73,7 +74,7 @@ Result<std::string> MungeSeal::unseal(const std::string& credential) const {
     const int code = library_->decode(credential.c_str(), nullptr, &bytes, &size, &user, &group);
     std::string text(static_cast<const char*>(bytes), bytes != nullptr ? static_cast<size_t>(size) : 0);
     std::free(bytes);
-    if (code != kSuccess) return library_->failed("unseal", code); // also a second use: the text is not trusted
+    if (code != kMungeSuccess) return library_->failed("unseal", code); // also a second use: the text is not trusted
     if (user != geteuid()) return Error{"the credential is of user " + std::to_string(user)};
     return text;
 }

@@ -16,7 +16,7 @@ std::string_view takeWord(std::string_view& line) {
     return word;
 }
 
-std::optional<int> numberOf(std::string_view word) {
+std::optional<int> idOf(std::string_view word) {
     int number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error != std::errc() || end != word.data() + word.size() || number < 0) return {};
@@ -59,7 +59,7 @@ std::optional<StarterRequest> starterRequestOf(std::string_view line) {
         return r.host.empty() || r.credential.empty() || !line.empty() ? std::nullopt : std::optional(r);
     }
     if (kind != "start" && kind != "stop") return {};
-    const auto id = numberOf(takeWord(line));
+    const auto id = idOf(takeWord(line));
     if (!id) return {};
     r.id = *id;
     r.kind = kind == "start" ? StarterRequest::Kind::Start : StarterRequest::Kind::Stop;
@@ -84,11 +84,11 @@ std::optional<StarterReply> starterReplyOf(std::string_view line) {
         return line.empty() ? std::optional(r) : std::nullopt;
     }
     if (kind != "started" && kind != "says" && kind != "ended") return {};
-    const auto id = numberOf(takeWord(line));
+    const auto id = idOf(takeWord(line));
     if (!id) return {};
     r.id = *id;
     if (kind == "started") {
-        const auto pid = numberOf(line);
+        const auto pid = idOf(line);
         if (!pid) return {};
         r.kind = StarterReply::Kind::Started;
         r.pid = *pid;

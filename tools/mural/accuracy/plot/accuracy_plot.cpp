@@ -8,6 +8,7 @@
 #include "balancer/svg/svg.hpp"
 #include "tools/mural/accuracy/accuracy_text.hpp"
 #include "tools/mural/accuracy/plot/cost_plot.hpp"
+#include "tools/mural/accuracy/plot/plot_colors.hpp"
 
 namespace mural::cli {
 
@@ -20,12 +21,11 @@ using drawing::Point;
 using drawing::Style;
 using drawing::Svg;
 
-constexpr double kWidth = 1080, kLabels = 330, kNone = 60, kPlot = 440; // column of exact results, then the scale
+constexpr double kPlotWidth = 1080, kLabels = 330, kNone = 60, kPlot = 440; // column of exact results, then the scale
 constexpr double kLeft = kLabels + kNone, kRight = kLeft + kPlot;
 constexpr double kTop = 118, kRow = 17, kHeading = 26;
 constexpr double kMin = 1e-3, kMax = 255;
-const char *const kGood = "#1f6f8b", *const kBad = "#c0392b", *const kFaint = "#d5dce3", *const kText = "#1f2933",
-                  *const kSoft = "#66727f";
+const char *const kGood = "#1f6f8b", *const kBad = "#c0392b";
 
 double placeOf(double value) {
     return kLeft + kPlot * std::log(std::clamp(value, kMin, kMax) / kMin) / std::log(kMax / kMin);
@@ -62,26 +62,28 @@ void drawDot(Svg& svg, Point at, const char* colour, const std::string& tip) {
 void drawRing(Svg& svg, Point at, const char* colour) { svg.rect(around(at, 4), ringed(colour)); }
 
 void drawHead(Svg& svg, const AccuracyReport& report, double bottom) {
-    svg.text({16, 28}, "Error of Mural's pictures against the reference", {.size = 18, .color = kText, .bold = true});
-    svg.text({16, 47}, report.subject + (report.gl.empty() ? "" : "; " + report.gl), {.size = 11, .color = kSoft},
-             kWidth - 32);
+    svg.text({16, 28}, "Error of Mural's pictures against the reference",
+             {.size = 18, .color = kTextColor, .bold = true});
+    svg.text({16, 47}, report.subject + (report.gl.empty() ? "" : "; " + report.gl),
+             {.size = 11, .color = kMinorTextColor}, kPlotWidth - 32);
     drawDot(svg, {22, 66}, kGood, "");
-    svg.text({32, 70}, "largest error of any colour value", {.size = 11, .color = kText});
+    svg.text({32, 70}, "largest error of any colour value", {.size = 11, .color = kTextColor});
     drawRing(svg, {240, 66}, kGood);
-    svg.text({250, 70}, "root mean square error", {.size = 11, .color = kText});
+    svg.text({250, 70}, "root mean square error", {.size = 11, .color = kTextColor});
     drawPromise(svg, 404, 66, false);
-    svg.text({412, 70}, "bound of the largest error", {.size = 11, .color = kText});
+    svg.text({412, 70}, "bound of the largest error", {.size = 11, .color = kTextColor});
     drawPromise(svg, 578, 66, true);
-    svg.text({586, 70}, "bound of the root mean square error (as PSNR)", {.size = 11, .color = kText});
+    svg.text({586, 70}, "bound of the root mean square error (as PSNR)", {.size = 11, .color = kTextColor});
     svg.text({(kLeft + kRight) / 2, 92}, "error, in steps of 1/255 of full brightness (logarithmic)",
-             {.size = 11, .color = kSoft, .align = Align::Middle});
+             {.size = 11, .color = kMinorTextColor, .align = Align::Middle});
     svg.rect({kLabels, 98, kNone, bottom - 98}, filled("#eef6ee", 0));
-    svg.text({kLabels + kNone / 2, 110}, "equal", {.size = 10, .color = kText, .align = Align::Middle});
+    svg.text({kLabels + kNone / 2, 110}, "equal", {.size = 10, .color = kTextColor, .align = Align::Middle});
     for (const double tick : {0.001, 0.01, 0.1, 1.0, 10.0, 100.0, 255.0}) {
-        svg.line({placeOf(tick), 114}, {placeOf(tick), bottom}, stroked(kFaint, 1, tick == 1 ? "" : "2 3"));
-        svg.text({placeOf(tick), 110}, fmt::format("{:g}", tick), {.size = 10, .color = kText, .align = Align::Middle});
+        svg.line({placeOf(tick), 114}, {placeOf(tick), bottom}, stroked(kGridColor, 1, tick == 1 ? "" : "2 3"));
+        svg.text({placeOf(tick), 110}, fmt::format("{:g}", tick),
+                 {.size = 10, .color = kTextColor, .align = Align::Middle});
     }
-    svg.text({kRight + 18, 110}, "differing pixels", {.size = 10, .color = kText});
+    svg.text({kRight + 18, 110}, "differing pixels", {.size = 10, .color = kTextColor});
 }
 
 std::string shareText(const MeasuredError& e) {
@@ -91,9 +93,9 @@ std::string shareText(const MeasuredError& e) {
 
 void drawRow(Svg& svg, const AccuracyRow& row, double y) {
     const char* colour = row.holds() ? kGood : kBad;
-    svg.text({28, y + 4}, row.what, {.size = 11, .color = row.holds() ? kText : kBad}, kLabels - 34);
+    svg.text({28, y + 4}, row.what, {.size = 11, .color = row.holds() ? kTextColor : kBad}, kLabels - 34);
     if (!row.failure.empty())
-        return svg.text({kLeft, y + 4}, "failed: " + row.failure, {.size = 11, .color = kBad}, kWidth - kLeft - 10);
+        return svg.text({kLeft, y + 4}, "failed: " + row.failure, {.size = 11, .color = kBad}, kPlotWidth - kLeft - 10);
     const auto at = [&](double value) { return Point{value > 0 ? placeOf(value) : kLabels + kNone / 2, y}; };
     const double usual = row.error.rootMeanSquare();
     const std::string tip = fmt::format("{}, against {}: largest {:.3g}, root mean square {:.3g}; bound: {}", row.what,
@@ -105,7 +107,7 @@ void drawRow(Svg& svg, const AccuracyRow& row, double y) {
         drawRing(svg, at(usual), colour);
     }
     drawDot(svg, at(row.error.largest), colour, tip);
-    svg.text({kRight + 18, y + 4}, shareText(row.error), {.size = 10, .color = kSoft});
+    svg.text({kRight + 18, y + 4}, shareText(row.error), {.size = 10, .color = kMinorTextColor});
 }
 
 } // namespace
@@ -123,13 +125,13 @@ std::string plotOf(const AccuracyReport& report) {
         if (row.group != group) {
             group = row.group;
             y += kHeading;
-            svg.text({16, y - 6}, group, {.size = 12, .color = kText, .bold = true});
+            svg.text({16, y - 6}, group, {.size = 12, .color = kTextColor, .bold = true});
         }
         drawRow(svg, row, y + kRow / 2 - 2);
         y += kRow;
     }
-    const double below = drawCosts(svg, report, {16, height + 40, kWidth - 32, 330});
-    return svg.finish(kWidth, std::max(height + 16, below + 16));
+    const double below = drawCosts(svg, report, {16, height + 40, kPlotWidth - 32, 330});
+    return svg.finish(kPlotWidth, std::max(height + 16, below + 16));
 }
 
 } // namespace mural::cli

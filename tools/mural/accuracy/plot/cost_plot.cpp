@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <map>
 
+#include "tools/mural/accuracy/plot/plot_colors.hpp"
+
 namespace mural::cli {
 
 namespace {
@@ -20,7 +22,6 @@ using drawing::Svg;
 constexpr double kMinError = 1e-3, kMaxError = 100, kExact = 60, kAxis = 40;
 constexpr std::array<const char*, 8> kColours{"#1f6f8b", "#c46a1b", "#5b8c2a", "#8e3b8a",
                                               "#b8312f", "#2f4b8f", "#8a7a1d", "#3f3f46"};
-const char *const kText = "#1f2933", *const kSoft = "#66727f", *const kFaint = "#d5dce3";
 
 struct Plot {
     Box area;
@@ -40,25 +41,25 @@ struct Plot {
 
 void drawFrame(Svg& svg, const Plot& p, const std::string& title) {
     Style faint, column;
-    faint.stroke = kFaint;
+    faint.stroke = kGridColor;
     faint.dash = "2 3";
     column.fill = "#eef6ee";
-    svg.text({p.area.x, p.area.y - 24}, title, {.size = 12, .color = kText, .bold = true});
+    svg.text({p.area.x, p.area.y - 24}, title, {.size = 12, .color = kTextColor, .bold = true});
     svg.rect({p.area.x + kAxis, p.area.y, kExact, p.area.h}, column);
     svg.text({p.area.x + kAxis + kExact / 2, p.area.y + p.area.h + 14}, "equal",
-             {.size = 10, .color = kText, .align = Align::Middle});
+             {.size = 10, .color = kTextColor, .align = Align::Middle});
     for (double v = p.minimum; v <= p.maximum * 1.01; v *= 10) {
         svg.line({p.area.x + kAxis, p.y(v)}, {p.area.x + p.area.w, p.y(v)}, faint);
         svg.text({p.area.x + kAxis - 5, p.y(v) + 3}, fmt::format("{:g}", v),
-                 {.size = 10, .color = kText, .align = Align::Right});
+                 {.size = 10, .color = kTextColor, .align = Align::Right});
     }
     for (double v = kMinError; v <= kMaxError * 1.01; v *= 10) {
         svg.line({p.x(v), p.area.y}, {p.x(v), p.area.y + p.area.h}, faint);
         svg.text({p.x(v), p.area.y + p.area.h + 14}, fmt::format("{:g}", v),
-                 {.size = 10, .color = kText, .align = Align::Middle});
+                 {.size = 10, .color = kTextColor, .align = Align::Middle});
     }
     svg.text({p.area.x + (p.area.w + kAxis) / 2, p.area.y + p.area.h + 30}, "root mean square error, of 255",
-             {.size = 11, .color = kSoft, .align = Align::Middle});
+             {.size = 11, .color = kMinorTextColor, .align = Align::Middle});
 }
 
 // Short label: the text after a colon, up to the first comma.
@@ -104,7 +105,7 @@ double drawCosts(Svg& svg, const AccuracyReport& report, const Box& area) {
     for (const AccuracyRow& row : report.rows)
         if (row.cost && groups.emplace(row.group, groups.size()).second) inOrder.push_back(row.group);
     if (groups.empty()) return area.y;
-    svg.text({area.x, area.y}, "Cost of the errors", {.size = 15, .color = kText, .bold = true});
+    svg.text({area.x, area.y}, "Cost of the errors", {.size = 15, .color = kTextColor, .bold = true});
     double y = area.y + 20;
     for (const std::string& group : inOrder) {
         Style dot;
@@ -113,7 +114,7 @@ double drawCosts(Svg& svg, const AccuracyReport& report, const Box& area) {
         const size_t i = groups[group];
         const Point at{area.x + static_cast<double>(i % 3) * area.w / 3, y + static_cast<double>(i / 3) * 16};
         svg.rect({at.x, at.y - 8, 8, 8}, dot);
-        svg.text({at.x + 13, at.y}, group, {.size = 11, .color = kText}, area.w / 3 - 20);
+        svg.text({at.x + 13, at.y}, group, {.size = 11, .color = kTextColor}, area.w / 3 - 20);
     }
     y += static_cast<double>((inOrder.size() + 2) / 3) * 16 + 36;
     const double width = (area.w - 30) / 2;

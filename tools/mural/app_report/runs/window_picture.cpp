@@ -15,7 +15,7 @@ namespace mural::cli {
 namespace {
 
 constexpr int64_t kAnswerMs = 3'000;
-constexpr int kMaxSide = 16'384;
+constexpr int kMaxWindowSide = 16'384;
 
 template <class T> struct Freed {
     void operator()(T* p) const { std::free(p); }
@@ -59,7 +59,7 @@ bool save(const launch::PrivateDisplay& display, const std::string& file) {
     const xcb_screen_t& screen = *xcb_setup_roots_iterator(xcb_get_setup(c)).data;
     int width = 0, height = 0;
     const xcb_window_t window = largestWindow(c, screen.root, width, height);
-    if (window == XCB_NONE || width > kMaxSide || height > kMaxSide) return false;
+    if (window == XCB_NONE || width > kMaxWindowSide || height > kMaxWindowSide) return false;
     // Through the root, whose picture includes the children of the window.
     const Reply<xcb_translate_coordinates_reply_t> at(
         xcb_translate_coordinates_reply(c, xcb_translate_coordinates(c, window, screen.root, 0, 0), nullptr));
