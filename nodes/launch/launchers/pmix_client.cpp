@@ -13,7 +13,7 @@
 namespace mural::launch {
 namespace {
 
-constexpr int kSuccess = 0;
+constexpr int kPmixSuccess = 0;
 constexpr uint8_t kScopeGlobal = 3;
 constexpr uint16_t kTypeString = 3;
 constexpr size_t kMaxNamespace = 255, kMaxKey = 511;
@@ -32,7 +32,7 @@ struct Value {
     };
 };
 
-int numberOf(const Environment& environment, const char* name, int otherwise) {
+int numberIn(const Environment& environment, const char* name, int otherwise) {
     const std::string text = environment.get(name).value_or("");
     int number = otherwise;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -62,16 +62,16 @@ struct PmixClient::Library {
                find(errorText, "PMIx_Error_string");
     }
     [[nodiscard]] Result<void> check(const char* call, int code) const {
-        if (code == kSuccess) return {};
+        if (code == kPmixSuccess) return {};
         return Error{std::string(call) + ": " + errorText(code)};
     }
 };
 
 PmixPlace pmixPlaceOf(const Environment& environment) {
     PmixPlace place;
-    place.rank = numberOf(environment, "PMIX_RANK", -1);
+    place.rank = numberIn(environment, "PMIX_RANK", -1);
     for (const char* const name : {"OMPI_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS", "SLURM_NTASKS", "PMI_SIZE"})
-        if (place.size == 0) place.size = numberOf(environment, name, 0);
+        if (place.size == 0) place.size = numberIn(environment, name, 0);
     return place;
 }
 
@@ -100,15 +100,17 @@ Result<void> PmixClient::put(const std::string& key, const std::string& text) co
     return library_->check("PMIx_Commit", library_->commit());
 }
 
-Result<void> PmixClient::fence(Deadline deadline) const {
+Result<void> PmixClient::fence(Deadline deadline, const std::function<bool()>& cancelled) const {
     auto promise = std::make_shared<std::promise<int>>();
     auto done = promise->get_future();
     std::thread([library = library_, promise] { promise->set_value(library->fence(nullptr, 0, nullptr, 0)); }).detach();
-    while (done.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready)
-        if (deadline.passed()) {
-            isInFence_ = true;
-            return Error{"not all processes of the start have arrived; each must run the same mural run"};
-        }
+    while (done.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready) {
+        const bool isCancelled = cancelled && cancelled();
+        if (!isCancelled && !deadline.passed()) continue;
+        isInFence_ = true;
+        if (isCancelled) return Error{"the wait for the other processes of the start was interrupted"};
+        return Error{"not all processes of the start have arrived; each must run the same mural run"};
+    }
     return library_->check("PMIx_Fence", done.get());
 }
 

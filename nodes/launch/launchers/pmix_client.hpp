@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -31,8 +32,8 @@ public:
 
     // Publishes a text for the other processes, from the next fence() on.
     [[nodiscard]] Result<void> put(const std::string& key, const std::string& text) const;
-    // Waits until all processes call it.
-    [[nodiscard]] Result<void> fence(Deadline deadline) const;
+    // Waits until all processes call it. Polls `cancelled`, if any, and returns an error after it is true.
+    [[nodiscard]] Result<void> fence(Deadline deadline, const std::function<bool()>& cancelled = {}) const;
     // Returns the text of another process.
     [[nodiscard]] Result<std::string> get(uint32_t rank, const std::string& key) const;
 
@@ -40,7 +41,7 @@ private:
     struct Library;
     explicit PmixClient(std::shared_ptr<Library> library);
     const std::shared_ptr<Library> library_; // also of a thread that waits in fence()
-    mutable bool isInFence_ = false;         // after a deadline: PMIx_Finalize would wait for the fence
+    mutable bool isInFence_ = false;         // after an abandoned fence: PMIx_Finalize would wait for the fence
 };
 
 } // namespace mural::launch

@@ -67,7 +67,8 @@ int runPmixRank(int rank, const NodeBinary& binary, int64_t timeoutMs) {
     };
     auto client = launch::PmixClient::open();
     if (!client) return failed(client.error().message);
-    if (auto met = (*client)->fence(Deadline::inMs(timeoutMs)); !met) return failed(met.error().message);
+    if (auto met = (*client)->fence(Deadline::inMs(timeoutMs), [] { return endRequested != 0; }); !met)
+        return failed(met.error().message);
     const auto lines = (*client)->get(0, kKey);
     if (!lines) return failed("rank 0 has published no nodes: " + lines.error().message);
     std::vector<std::unique_ptr<NodeProcess>> nodes;
