@@ -8,7 +8,7 @@
 namespace mural::gl {
 
 // Each constructor creates a test context, so that an opened backend works. Leaves no context current.
-Result<std::unique_ptr<Platform>> openEgl();
+Result<std::unique_ptr<Platform>> openEgl(const GpuChoice& choice);
 Result<std::unique_ptr<Platform>> openOsmesa();
 Result<std::unique_ptr<Platform>> openGlx(); // on the display named by DISPLAY
 

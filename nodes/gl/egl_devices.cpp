@@ -1,6 +1,8 @@
 #include "nodes/gl/egl_devices.hpp"
 
 #include <array>
+#include <filesystem>
+#include <system_error>
 
 #include "nodes/gl/egl_display.hpp"
 
@@ -17,7 +19,6 @@
 namespace mural::gl {
 namespace {
 
-constexpr EGLint kMaxDevices = 64;
 constexpr EGLint kUuidBytes = 16;
 
 using QueryBinary = EGLBoolean (*)(EGLDeviceEXT, EGLint name, EGLint maxBytes, void* value, EGLint* bytes);
@@ -39,6 +40,15 @@ std::string stringOf(const EglFunctions& egl, EGLDeviceEXT device, const std::st
     return text ? text : "";
 }
 
+// The kernel links a DRM node to the folder of its PCI device.
+std::string pciAddressOf(const std::string& drmNode) {
+    const std::string node = drmNode.substr(drmNode.rfind('/') + 1);
+    std::error_code error;
+    const auto device = std::filesystem::read_symlink("/sys/class/drm/" + node + "/device", error);
+    const std::string address = error ? std::string() : device.filename().string();
+    return address.find(':') == std::string::npos ? std::string() : address;
+}
+
 } // namespace
 
 std::vector<EglDevice> listEglDevices() {
@@ -46,9 +56,9 @@ std::vector<EglDevice> listEglDevices() {
     const auto loaded = loadEgl();
     if (!loaded) return list;
     const EglFunctions& egl = loaded.value();
-    std::array<EGLDeviceEXT, kMaxDevices> devices{};
+    std::array<EGLDeviceEXT, kMaxEglDevices> devices{};
     EGLint count = 0;
-    if (!egl.queryDevices || !egl.queryDeviceString || !egl.queryDevices(kMaxDevices, devices.data(), &count))
+    if (!egl.queryDevices || !egl.queryDeviceString || !egl.queryDevices(kMaxEglDevices, devices.data(), &count))
         return list;
     const auto queryBinary = reinterpret_cast<QueryBinary>(egl.getProcAddress("eglQueryDeviceBinaryEXT"));
     for (EGLint i = 0; i < count; ++i) {
@@ -62,6 +72,7 @@ std::vector<EglDevice> listEglDevices() {
         d.drmNode = stringOf(egl, device, extensions, "EGL_EXT_device_drm_render_node", EGL_DRM_RENDER_NODE_FILE_EXT);
         if (d.drmNode.empty())
             d.drmNode = stringOf(egl, device, extensions, "EGL_EXT_device_drm", EGL_DRM_DEVICE_FILE_EXT);
+        if (!d.drmNode.empty()) d.pciAddress = pciAddressOf(d.drmNode);
         std::array<unsigned char, kUuidBytes> uuid{};
         EGLint bytes = 0;
         if (queryBinary && extensions.find("EGL_EXT_device_persistent_id") != std::string::npos &&

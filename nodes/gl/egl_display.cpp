@@ -1,5 +1,6 @@
 #include "nodes/gl/egl_display.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -106,9 +107,9 @@ std::shared_ptr<EglDisplayState> openSurfaceless(const EglFunctions& egl, std::s
 // Returns the display of a device that draws with a GPU. With `softwareToo`, a device with a software renderer is the
 // second choice. Null: there is none.
 std::shared_ptr<EglDisplayState> openDevice(const EglFunctions& egl, bool softwareToo, std::string& why) {
-    EGLDeviceEXT devices[64];
+    EGLDeviceEXT devices[kMaxEglDevices];
     EGLint count = 0;
-    if (!egl.queryDevices || !egl.queryDevices(64, devices, &count)) count = 0;
+    if (!egl.queryDevices || !egl.queryDevices(kMaxEglDevices, devices, &count)) count = 0;
     if (count == 0) why += " devices: none;";
     for (const bool software : {false, true})
         for (EGLint i = 0; i < count && (softwareToo || !software); i++) {
@@ -120,6 +121,40 @@ std::shared_ptr<EglDisplayState> openDevice(const EglFunctions& egl, bool softwa
             return state;
         }
     return nullptr;
+}
+
+// Returns the display of one of the GPUs in turn. Null: there are fewer than two.
+std::shared_ptr<EglDisplayState> openDeviceInTurn(const EglFunctions& egl, int turn, std::string& why) {
+    EGLDeviceEXT devices[kMaxEglDevices];
+    EGLint count = 0;
+    if (!egl.queryDevices || !egl.queryDevices(kMaxEglDevices, devices, &count)) count = 0;
+    const auto gpus = std::count_if(devices, devices + count, [&](EGLDeviceEXT d) { return !isSoftware(egl, d); });
+    if (gpus < 2) return nullptr;
+    std::vector<std::shared_ptr<EglDisplayState>> open;
+    for (EGLint i = 0; i < count; i++) {
+        if (isSoftware(egl, devices[i])) continue;
+        EGLDisplay display = egl.getPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
+        if (auto state = initialize(egl, display, "device " + std::to_string(i), why)) open.push_back(std::move(state));
+        if (open.size() == static_cast<size_t>(turn) + 1) return open.back();
+    }
+    return open.empty() ? nullptr : open[static_cast<size_t>(turn) % open.size()];
+}
+
+Result<std::shared_ptr<EglDisplayState>> openNamedDevice(const EglFunctions& egl, const std::string& name) {
+    const std::vector<EglDevice> list = listEglDevices();
+    size_t number = 0;
+    while (number < list.size() && !matchesGpu(name, number, list[number])) ++number;
+    EGLDeviceEXT devices[kMaxEglDevices];
+    EGLint count = 0;
+    if (number < list.size() && !egl.queryDevices(kMaxEglDevices, devices, &count)) count = 0;
+    if (number >= static_cast<size_t>(count))
+        return Error{"this machine has no GPU '" + name + "' (--gpus); its EGL devices: " + listOf(list)};
+    std::string why;
+    EGLDisplay display = egl.getPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[number], nullptr);
+    auto state = initialize(egl, display, "device " + std::to_string(number), why);
+    if (!state) return Error{"the GPU '" + name + "' cannot be opened:" + why + " another one: --gpus"};
+    state->software = list[number].software;
+    return state;
 }
 
 } // namespace
@@ -142,10 +177,13 @@ void EglDeferredObjects::destroy(const EglFunctions& egl, EGLDisplay display) {
 
 bool EglDisplayState::has(const char* extension) const { return hasWord(extensions.c_str(), extension); }
 
-Result<std::shared_ptr<EglDisplayState>> openEglDisplay() {
+Result<std::shared_ptr<EglDisplayState>> openEglDisplay(const GpuChoice& choice) {
     auto egl = loadEgl();
     if (!egl) return egl.error();
+    if (!choice.name.empty()) return openNamedDevice(*egl, choice.name);
     std::string why;
+    if (choice.turns > 1)
+        if (auto device = openDeviceInTurn(*egl, choice.turn, why)) return device;
     auto surfaceless = openSurfaceless(*egl, why);
     if (surfaceless && !surfaceless->software && surfaceless->mesa) return surfaceless;
     if (auto device = openDevice(*egl, !surfaceless, why)) return device;

@@ -12,6 +12,7 @@
 
 #include "nodes/gl/config_match.hpp"
 #include "nodes/gl/dynamic_library.hpp"
+#include "nodes/gl/gpu_choice.hpp"
 
 namespace mural::gl {
 
@@ -92,8 +93,9 @@ struct EglDisplayState {
 // Opens the surfaceless display or the display of a device. A GPU is preferred to a software renderer. With several
 // vendors installed, the surfaceless platform may select Mesa's software renderer although another vendor's GPU draws
 // the machine's windows. With drivers other than Mesa a device's display is preferred; all of them have supported it
-// for long.
-Result<std::shared_ptr<EglDisplayState>> openEglDisplay();
+// for long. With several processes that divide the GPUs, each opens the display of a device. Devices that cannot be
+// initialized, for instance because a job has no access to them, do not count.
+Result<std::shared_ptr<EglDisplayState>> openEglDisplay(const GpuChoice& choice);
 
 // Returns the display of a device if `display` is surfaceless, otherwise null. Some drivers lack a necessary feature on
 // their surfaceless display.

@@ -370,8 +370,8 @@ Result<void> EglPlatform::measure() {
 
 } // namespace
 
-Result<std::unique_ptr<Platform>> openEgl() {
-    auto display = openEglDisplay();
+Result<std::unique_ptr<Platform>> openEgl(const GpuChoice& choice) {
+    auto display = openEglDisplay(choice);
     if (!display) return display.error();
     auto platform = std::make_unique<EglPlatform>(display.value());
     if (auto measured = platform->measure(); !measured) return measured.error();

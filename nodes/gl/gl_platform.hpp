@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/result.hpp"
+#include "nodes/gl/gpu_choice.hpp"
 
 namespace mural::gl {
 
@@ -125,7 +126,7 @@ public:
 };
 
 // name: "egl", "osmesa", "glx" or "auto" (EGL, then OSMesa). The error text names the missing part and the way to get
-// it.
-Result<std::unique_ptr<Platform>> openPlatform(const std::string& name);
+// it. Only EGL chooses a GPU: GLX uses the one of its display.
+Result<std::unique_ptr<Platform>> openPlatform(const std::string& name, const GpuChoice& choice = {});
 
 } // namespace mural::gl

@@ -208,7 +208,7 @@ private:
             return fail("the head uses another stream format (" + (setup_.build.empty() ? "unnamed" : setup_.build) +
                         ") than this node (" + streamBuild() + "): install the same version of mural on both machines");
         line_->send(wire::NodeMessage::Alive, {}); // the versions are equal; GL may take a while
-        auto platform = gl::openPlatform(setup_.glBackend);
+        auto platform = gl::openPlatform(setup_.glBackend, {setup_.gpu, setup_.gpuTurn, setup_.gpuTurns});
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = describeNode(**platform);
         const std::string renderer = ready.value("renderer", "");

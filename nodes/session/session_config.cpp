@@ -103,6 +103,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("display", c.display);
     visit("localRendering", c.localRendering);
     visit("glBackend", c.glBackend);
+    visit("gpus", c.gpus);
     visit("latency", c.latency, 0);
     visit("verifyEvery", c.verifyEvery, 0);
     visit("frames", c.frames, 0);
@@ -164,6 +165,9 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("focusDistance", s.focusDistance);
     visit("tiling", s.tiling);
     visit("glBackend", s.glBackend);
+    visit("gpu", s.gpu);
+    visit("gpuTurn", s.gpuTurn, 0);
+    visit("gpuTurns", s.gpuTurns, 1);
     visit("sendPictures", s.sendPictures);
     visit("pictureCodec", s.pictureCodec);
     visit("windowPixels", s.windowPixels);

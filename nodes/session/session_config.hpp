@@ -69,6 +69,7 @@ struct SessionConfig {
     Display display = Display::None;
     LocalRendering localRendering = LocalRendering::Off;
     std::string glBackend = "auto";         // --gl: auto, egl, osmesa, glx
+    std::vector<std::string> gpus{"auto"};  // --gpus: auto, first, or names that the nodes of a machine take in turn
     int latency = 1;                        // credit: frames that the program may be ahead of the wall
     int verifyEvery = 0;                    // --verify[=n]
     int64_t frames = 0;                     // --frames; 0: until the program ends
@@ -110,7 +111,9 @@ struct NodeSetup {
     double eyeBase = 0.05, focusDistance = 1; // see SessionConfig
     Tiling tiling = Tiling::Exact;
     std::string glBackend = "auto";
-    bool sendPictures = false;        // sends Picture messages to the head at every swap…
+    std::string gpu;               // name of its GPU (nodes/gl/gpu_choice.hpp); empty: by turn
+    int gpuTurn = 0, gpuTurns = 1; // its number among the nodes of its machine that divide the GPUs; 1: the first GPU
+    bool sendPictures = false;     // sends Picture messages to the head at every swap…
     std::string pictureCodec = "raw"; // …or PackedPicture messages, unless raw: a name for PlaneEncoder
     bool windowPixels = false;        // pictures go to the program's own window, so lossy codecs keep the alpha
     bool deepPictures = false;        // pictures keep 10 bits per channel; requires windowPixels

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "nodes/gl/config_match.hpp"
+#include "nodes/gl/egl_devices.hpp"
 #include "nodes/gl/gl_probe.hpp"
 #include "tests/gl/backend_test.hpp"
 #include "tests/gl/scene.hpp"
@@ -524,6 +525,37 @@ TEST(OpenPlatform, checksNames) {
     auto some = gl::openPlatform("auto");
     ASSERT_TRUE(some) << some.error().message;
     EXPECT_EQ((*some)->describe().rfind("EGL", 0), 0u);
+}
+
+TEST(OpenPlatform, opensTheNamedGpu) {
+    const auto devices = gl::listEglDevices();
+    if (devices.empty()) GTEST_SKIP() << "EGL lists no devices";
+    const size_t last = devices.size() - 1;
+    auto named = gl::openPlatform("egl", {std::to_string(last), 0, 1});
+    ASSERT_TRUE(named) << named.error().message;
+    EXPECT_NE((*named)->describe().find("device " + std::to_string(last)), std::string::npos) << (*named)->describe();
+    auto turn = gl::openPlatform("egl", {"", 5, 6});
+    EXPECT_TRUE(turn) << turn.error().message;
+    // "auto" does not fall back to OSMesa: the user asked for one GPU.
+    for (const char* backend : {"egl", "auto"}) {
+        auto none = gl::openPlatform(backend, {"GPU-0", 0, 1});
+        ASSERT_FALSE(none);
+        EXPECT_EQ(none.error().message.rfind("this machine has no GPU 'GPU-0' (--gpus); its EGL devices: 0", 0), 0u)
+            << none.error().message;
+    }
+}
+
+TEST(GpuChoice, matchesEveryNameOfADevice) {
+    const gl::EglDevice device{
+        "device 1", "Some GPU", "/dev/dri/renderD129", "0000:65:00.0", "0a1b2c3d0a1b2c3d0a1b2c3d0a1b2c3d", false};
+    for (const char* name : {"1", "GPU-0A1B2C3D-0a1b-2c3d-0a1b-2c3d0a1b2c3d", "0a1b2c3d0a1b2c3d0a1b2c3d0a1b2c3d",
+                             "/dev/dri/renderD129", "0000:65:00.0"})
+        EXPECT_TRUE(gl::matchesGpu(name, 1, device)) << name;
+    for (const char* name : {"", "0", "11", "GPU-0a1b2c3d", "/dev/dri/renderD12", "0000:66:00.0", "Some GPU"})
+        EXPECT_FALSE(gl::matchesGpu(name, 1, device)) << name;
+    EXPECT_FALSE(gl::matchesGpu("GPU-", 1, {"device 1", "", "", "", "", true})) << "a device without names";
+    EXPECT_EQ(gl::listOf({device, {"device 2", "", "", "", "", true}}),
+              "0 (Some GPU, 0000:65:00.0, /dev/dri/renderD129, 0a1b2c3d0a1b2c3d0a1b2c3d0a1b2c3d), 1 (software)");
 }
 
 TEST(OpenPlatform, reportsMissingGlxFeatures) {

@@ -64,6 +64,7 @@ TEST(RunOptions, readEveryOption) {
         a.tiling = "lean";
         a.localRendering = "on";
         a.gl = "osmesa";
+        a.gpus = "first";
         a.latency = "0";
         a.captureVia = "preload";
         a.verify = "5";
@@ -91,6 +92,7 @@ TEST(RunOptions, readEveryOption) {
     EXPECT_EQ(c.tiling, Tiling::Lean);
     EXPECT_EQ(c.localRendering, LocalRendering::On);
     EXPECT_EQ(c.glBackend, "osmesa");
+    EXPECT_EQ(c.gpus, std::vector<std::string>{"first"});
     EXPECT_EQ(c.latency, 0);
     EXPECT_EQ(c.verifyEvery, 5);
     EXPECT_TRUE(c.fullScreen);
@@ -104,6 +106,17 @@ TEST(RunOptions, readEveryOption) {
     EXPECT_EQ(c.delta, DeltaMode::Off);
     EXPECT_EQ(c.cacheBytes, 64 << 20);
     EXPECT_EQ(o.captureVia, EntryChoice::Preload);
+}
+
+TEST(RunOptions, nameGpusInAList) {
+    const RunOptions o = accepted([](RunArguments& a) { a.gpus = "0000:65:00.0,GPU-1f,2"; });
+    EXPECT_EQ(o.config.gpus, (std::vector<std::string>{"0000:65:00.0", "GPU-1f", "2"}));
+    for (const char* bad : {"", "1,,2", "auto,1", "1,first", ","})
+        EXPECT_EQ(
+            refusal([&](RunArguments& a) { a.gpus = bad; }).rfind("--gpus \"" + std::string(bad) + "\": must be", 0),
+            0u)
+            << bad;
+    EXPECT_EQ(refusal([](RunArguments& a) { a.gl = "osmesa", a.gpus = "1"; }), "--gpus 1 needs EGL; omit --gl osmesa");
 }
 
 TEST(RunOptions, giveNodesOneTileEachByDefault) {

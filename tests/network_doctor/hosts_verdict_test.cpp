@@ -29,7 +29,7 @@ HostExamined goodHost(const std::string& name) {
     f.glUsed = "EGL";
     f.renderer = "llvmpipe";
     f.glVersion = "4.5 Mesa 22.3.6";
-    f.devices = {{"device 0", "llvmpipe", "", "", true}};
+    f.devices = {{"device 0", "llvmpipe", "", "", "", true}};
     f.displays = {{":0", "", {1920, 1080, {{"HDMI-1", 0, 0, 1920, 1080, 0, 0}}}}};
     f.openFiles = 1024;
     f.sharedMemoryBytes = f.memoryBytes = kGiB;

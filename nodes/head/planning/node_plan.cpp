@@ -125,6 +125,30 @@ bool keepsPixels(const SessionPlan& plan, const NodePlan& node) {
     return picturesOf(plan.wall) == 1 && plan.canvases.empty() && !scales && !mayLose(node.pictureCodec);
 }
 
+// True if `other` draws, on the machine of the node.
+bool shareMachine(const NodePlan& other, const NodePlan& node) {
+    const bool bothHere = other.reach != NodeReach::LaunchCommand && node.reach != NodeReach::LaunchCommand;
+    return !other.isVacant && (bothHere || (other.reach == node.reach && other.where == node.where));
+}
+
+// The nodes of a machine take its GPUs, or the named ones, in turn.
+void chooseGpu(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node, NodeSetup& setup) {
+    int turn = 0, turns = 0;
+    for (const NodePlan& other : plan.nodes) {
+        if (!shareMachine(other, node)) continue;
+        if (other.node < node.node) ++turn;
+        ++turns;
+    }
+    const std::string first = config.gpus.empty() ? "auto" : config.gpus.front();
+    if (first == "first") return;
+    if (first == "auto") {
+        setup.gpuTurn = turn;
+        setup.gpuTurns = std::max(turns, 1);
+        return;
+    }
+    setup.gpu = config.gpus[static_cast<size_t>(turn) % config.gpus.size()];
+}
+
 } // namespace
 
 NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
@@ -146,11 +170,9 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
             const Viewport area = other.area.value_or(Viewport{});
             setup.areas.insert(setup.areas.end(), {area.x, area.y, area.w, area.h});
         }
-    setup.sharesMachine = std::ranges::any_of(plan.nodes, [&](const NodePlan& other) {
-        const bool bothHere = other.reach != NodeReach::LaunchCommand && node.reach != NodeReach::LaunchCommand;
-        return other.node != node.node && !other.isVacant &&
-               (bothHere || (other.reach == node.reach && other.where == node.where));
-    });
+    setup.sharesMachine = std::ranges::any_of(
+        plan.nodes, [&](const NodePlan& other) { return other.node != node.node && shareMachine(other, node); });
+    chooseGpu(config, plan, node, setup);
     setup.pass = node.pass;
     setup.transferScale = node.transferScale;
     setup.screen = node.screen;

@@ -145,6 +145,28 @@ TEST(NodePlan, startsQueuesWithEvenPartsThatMove) {
     EXPECT_EQ(pixels, 777'000);
 }
 
+TEST(NodePlan, dividesTheGpusOfAMachineAmongItsNodes) {
+    SessionConfig config;
+    config.columns = 5;
+    config.hosts = {"wall1", "wall1", "wall2", "wall1", "wall2"};
+    const auto setups = [&] {
+        const SessionPlan plan = makePlan(config, "me").value();
+        std::vector<NodeSetup> all;
+        for (const NodePlan& node : plan.nodes)
+            all.push_back(nodeSetupFromJson(toJson(setupOf(config, plan, node))).value());
+        return all;
+    };
+    std::vector<std::pair<int, int>> turns;
+    for (const NodeSetup& setup : setups()) turns.emplace_back(setup.gpuTurn, setup.gpuTurns);
+    EXPECT_EQ(turns, (std::vector<std::pair<int, int>>{{0, 3}, {1, 3}, {0, 2}, {2, 3}, {1, 2}}));
+    config.gpus = {"first"};
+    for (const NodeSetup& setup : setups()) EXPECT_EQ(setup.gpuTurns, 1);
+    config.gpus = {"1", "GPU-0a"};
+    std::vector<std::string> names;
+    for (const NodeSetup& setup : setups()) names.push_back(setup.gpu);
+    EXPECT_EQ(names, (std::vector<std::string>{"1", "GPU-0a", "1", "1", "GPU-0a"}));
+}
+
 TEST(NodePlan, keepsAreasThatCannotMove) {
     const auto planned = [](const auto& change) {
         SessionConfig config;

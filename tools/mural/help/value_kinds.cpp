@@ -76,6 +76,10 @@ const OptionKind kOptions[] = {
     {"", "--delta", [] { return wordsOnly(namesOf(kDeltaChoices)); }},
     {"", "--readback", [] { return wordsOnly(namesOf(kReadbackChoices)); }},
     {"", "--gl", [] { return wordsOnly(namesOf(kGlChoices)); }},
+    {"", "--gpus",
+     [] {
+         return wordsOnly({"auto", "first"});
+     }},
     {"", "--capture-via", [] { return wordsOnly(namesOf(kEntryChoices)); }},
     {"", "--balance", [] { return wordsOnly(namesOf(kBalanceChoices)); }},
     {"config", "--stereo",

@@ -76,6 +76,7 @@ json toJson(const HostFacts& f) {
         devices.push_back({{"name", d.name},
                            {"renderer", d.renderer},
                            {"drmNode", d.drmNode},
+                           {"pciAddress", d.pciAddress},
                            {"uuid", d.uuid},
                            {"software", d.software}});
     for (const DisplayFacts& d : f.displays) displays.push_back(displayJson(d));
@@ -115,8 +116,8 @@ HostFacts hostFactsFrom(const json& j) {
     f.maxPictureSize = sizeIn(j, "maxPictureSize");
     f.eglProblem = stringIn(j, "eglProblem");
     for (const json& d : objectsIn(j, "devices"))
-        f.devices.push_back({stringIn(d, "name"), stringIn(d, "renderer"), stringIn(d, "drmNode"), stringIn(d, "uuid"),
-                             flagIn(d, "software")});
+        f.devices.push_back({stringIn(d, "name"), stringIn(d, "renderer"), stringIn(d, "drmNode"),
+                             stringIn(d, "pciAddress"), stringIn(d, "uuid"), flagIn(d, "software")});
     for (const json& d : objectsIn(j, "displays")) f.displays.push_back(displayFrom(d));
     if (const auto nodes = j.find("closedDrmNodes"); nodes != j.end() && nodes->is_array())
         for (const json& name : *nodes)

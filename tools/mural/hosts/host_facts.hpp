@@ -16,8 +16,9 @@ namespace mural::cli {
 struct GlDeviceFacts {
     std::string name; // "device 0"
     std::string renderer;
-    std::string drmNode; // /dev/dri/renderD128; empty: none
-    std::string uuid;    // hex digits; empty: the driver has none
+    std::string drmNode;    // /dev/dri/renderD128; empty: none
+    std::string pciAddress; // 0000:65:00.0; empty: unknown
+    std::string uuid;       // hex digits; empty: the driver has none
     bool software = false;
 };
 

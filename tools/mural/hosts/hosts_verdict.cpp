@@ -95,11 +95,12 @@ void addGl(const HostFacts& f, std::vector<Check>& checks) {
     bool gpu = false;
     for (const GlDeviceFacts& d : f.devices) {
         gpu = gpu || !d.software;
-        devices += fmt::format("{}{}: {}{}{}", devices.empty() ? "" : "; ", d.name,
+        devices += fmt::format("{}{}: {}{}{}{}", devices.empty() ? "" : "; ", d.name,
                                !d.renderer.empty() ? d.renderer
                                : d.software        ? "software"
                                                    : "GPU",
-                               d.drmNode.empty() ? "" : " " + d.drmNode, d.uuid.empty() ? "" : " " + d.uuid);
+                               d.drmNode.empty() ? "" : " " + d.drmNode, d.pciAddress.empty() ? "" : " " + d.pciAddress,
+                               d.uuid.empty() ? "" : " " + d.uuid);
     }
     if (!f.devices.empty()) checks.push_back(good("EGL devices", devices));
     if (!f.closedDrmNodes.empty())

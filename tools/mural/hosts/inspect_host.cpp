@@ -86,14 +86,15 @@ void inspectGl(HostFacts& f) {
                 list.push_back({{"name", d.name},
                                 {"renderer", d.renderer},
                                 {"drm", d.drmNode},
+                                {"pci", d.pciAddress},
                                 {"uuid", d.uuid},
                                 {"software", d.software}});
             return nlohmann::json{{"devices", list}};
         },
         kGlMs, ignored);
     for (const auto& d : devices.value("devices", nlohmann::json::array()))
-        f.devices.push_back({d.value("name", ""), d.value("renderer", ""), d.value("drm", ""), d.value("uuid", ""),
-                             d.value("software", false)});
+        f.devices.push_back({d.value("name", ""), d.value("renderer", ""), d.value("drm", ""), d.value("pci", ""),
+                             d.value("uuid", ""), d.value("software", false)});
 }
 
 DisplayFacts inspectDisplay(const std::string& name) {

@@ -82,6 +82,12 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("WHAT");
     command.add_option("--gl", a.gl, "GL of the render nodes: auto, egl, osmesa, glx (auto)")->type_name("GL");
     command
+        .add_option(
+            "--gpus", a.gpus,
+            "GPUs of the nodes of each machine: auto (in turn), first, or a list that they take in turn: number, "
+            "UUID, DRM node or PCI address as in mural doctor --nodes (auto)")
+        ->type_name("GPUS");
+    command
         .add_option("--capture-via", a.captureVia,
                     "capture of the program's GL: glvnd, preload (also the program's own GL library), auto: by the "
                     "program's libraries (auto)")

@@ -1,5 +1,6 @@
 #include "tools/mural/run/run_options.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -10,6 +11,18 @@ namespace mural::cli {
 
 namespace {
 
+Result<void> readGpus(const RunArguments& a, SessionConfig& c) {
+    if (!a.gpus) return {};
+    c.gpus = listOf(*a.gpus);
+    const auto isWord = [](const std::string& name) { return name == "auto" || name == "first"; };
+    const bool isMixed = c.gpus.size() > 1 && std::ranges::any_of(c.gpus, isWord);
+    if (isMixed || std::ranges::any_of(c.gpus, &std::string::empty))
+        return badValue("--gpus", *a.gpus, "must be auto, first, or names of GPUs with commas between them");
+    if (!isWord(c.gpus.front()) && c.glBackend != "auto" && c.glBackend != "egl")
+        return Error{"--gpus " + *a.gpus + " needs EGL; omit --gl " + c.glBackend};
+    return {};
+}
+
 Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     const char* backend = "auto";
     if (auto r = choose("--display", a.display, kDisplayChoices, c.display); !r) return r;
@@ -19,7 +32,7 @@ Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     if (auto r = choose("--delta", a.delta, kDeltaChoices, c.delta); !r) return r;
     if (auto r = choose("--readback", a.readback, kReadbackChoices, c.readback); !r) return r;
     c.glBackend = backend;
-    return {};
+    return readGpus(a, c);
 }
 
 Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
