@@ -148,7 +148,7 @@ export class Scene {
             if (isStill) (this.stillFrames ??= [])[i] = frame;
             return {
                 output: this.names[i], node: node.node, frame,
-                hash: (BigInt(frame) * 0x9e3779b97f4a7c15n & 0xffffffffffffffffn).toString(16).padStart(16, '0'),
+                hash: (BigInt(frame * 8 + i) * 0x9e3779b97f4a7c15n & 0xffffffffffffffffn).toString(16).padStart(16, '0'),
                 ageSeconds: isStill ? (this.frame - frame) * kFrameSeconds : 0.2 + 0.1 * i,
             };
         });
@@ -163,7 +163,7 @@ export class Scene {
             const source = recorded[this.nextFrame % recorded.length];
             const shift = Math.floor(this.nextFrame / recorded.length) * length;
             result.push({
-                ...source, number: this.nextFrame, frame: this.frame - many + i + 1, doneNs: source.doneNs + shift,
+                ...source, number: this.nextFrame, frame: 4000 + this.nextFrame, doneNs: source.doneNs + shift,
                 tracks: source.tracks.map(track => ({ ...track, spans: track.spans.map(([kind, begin, end]) => {
                     const isShort = this.isSlow && track.process === 'node' && track.number !== kSlowNode;
                     return [kind, begin + shift, (isShort ? begin + (end - begin) * 0.4 : end) + shift];

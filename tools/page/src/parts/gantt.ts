@@ -132,7 +132,7 @@ function drawAxis(context: CanvasRenderingContext2D, range: Range, frames: Frame
     context.fillStyle = colours.faint;
     context.strokeStyle = colours.line;
     context.lineWidth = 1;
-    for (let ns = Math.ceil(range.fromNs / stepNs) * stepNs; ns < range.toNs; ns += stepNs) {
+    for (let ns = range.fromNs; ns < range.toNs; ns += stepNs) {
         const x = Math.round(xOf(ns)) + 0.5;
         context.beginPath();
         context.moveTo(x, kAxisHeight);

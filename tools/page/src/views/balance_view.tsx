@@ -1,7 +1,7 @@
 // The division of the work: cuts over the wall, shares, measured and predicted times, and the equalizers' parameters.
 
 import { useState } from 'preact/hooks';
-import { ms, percent, short, count } from '../parts/format.ts';
+import { ms, percent, count } from '../parts/format.ts';
 import { Picture } from '../parts/picture.tsx';
 import { useCell } from '../session/cell.ts';
 import { equalizersOf, type Session } from '../session/session.ts';
@@ -95,7 +95,7 @@ function EqualizerCard({ session, equalizer }: { session: Session; equalizer: Eq
                     </button>
                 )}
             </div>
-            <p>{equalizer.frozen ? <b>Frozen. </b> : ''}{equalizer.decision}. Nodes are busy {percent(equalizer.efficiency)} of the longest time.
+            <p>{equalizer.frozen ? <b>Frozen. </b> : ''}{equalizer.decision.charAt(0).toUpperCase() + equalizer.decision.slice(1)}. Nodes are busy {percent(equalizer.efficiency)} of the longest time.
                 {' '}Moved after {count(equalizer.moves)} of {count(equalizer.frames)} frames.</p>
             <div class="shares" role="img" aria-label={parts.map(part => `node ${part.node} ${percent(part.part)}`).join(', ')}>
                 {parts.map(part => (
@@ -104,6 +104,7 @@ function EqualizerCard({ session, equalizer }: { session: Session; equalizer: Eq
                     </span>
                 ))}
             </div>
+            <div class="balance-table" tabIndex={0} role="region" aria-label={`Times of ${equalizer.name}`}>
             <table class="balance">
                 <caption class="hidden">Times of {equalizer.name}</caption>
                 <thead><tr><th scope="col">Node</th><th scope="col" class="number">Part</th><th scope="col">{`Measured (bar), ${goal.toLowerCase()} (line)`}</th>
@@ -118,11 +119,12 @@ function EqualizerCard({ session, equalizer }: { session: Session; equalizer: Eq
                                 <i style={{ left: `${((part.predictedMs || 0) / longest) * 100}%` }} />
                             </span></td>
                             <td class="number">{ms(part.replayMs)}</td>
-                            <td class="number">{short(part.predictedMs)} ms</td>
+                            <td class="number">{ms(part.predictedMs)}</td>
                         </tr>
                     ))}
                 </tbody>
             </table>
+            </div>
             <h3>Parameters</h3>
             <div class="parameters">
                 {Object.keys(equalizer.parameters).map(name => (

@@ -50,10 +50,11 @@ function Gantt({ frames, kinds, range, onRange }: {
     const drag = useRef<number | null>(null);
     const rows = useMemo(() => rowsOf(frames, kinds), [frames, kinds]);
     useEffect(() => {
-        const draw = () => drawGantt(canvas.current!, rows, frames, range, ganttColours());
+        const element = canvas.current!;
+        const draw = () => drawGantt(element, rows, frames, range, ganttColours());
         draw();
         const resize = new ResizeObserver(draw);
-        resize.observe(canvas.current!);
+        resize.observe(element);
         return () => resize.disconnect();
     }, [rows, frames, range, scheme]);
     useEffect(() => {
@@ -62,8 +63,8 @@ function Gantt({ frames, kinds, range, onRange }: {
         query.addEventListener('change', change);
         return () => query.removeEventListener('change', change);
     }, []);
-    const share = (clientX: number) => {
-        const box = canvas.current!.getBoundingClientRect();
+    const share = (element: HTMLElement, clientX: number) => {
+        const box = element.getBoundingClientRect();
         const left = labelWidth(box.width);
         return Math.min(1, Math.max(0, (clientX - box.left - left) / (box.width - left)));
     };
@@ -73,7 +74,7 @@ function Gantt({ frames, kinds, range, onRange }: {
         const wheel = (event: WheelEvent) => {
             if (!event.ctrlKey && !event.shiftKey) return;
             event.preventDefault();
-            const around = share(event.clientX);
+            const around = share(element, event.clientX);
             onRange(old => changed(old, 1.0015 ** (event.deltaY || event.deltaX), around, 0));
         };
         element.addEventListener('wheel', wheel, { passive: false });
@@ -135,12 +136,12 @@ export function TimelineView({ session }: ViewProps) {
     };
     const done = useMemo(() => frames.filter(frame => frame.doneNs), [frames]);
     const times = useMemo(() => ({
-        x: done.slice(1).map(frame => frame.frame),
+        x: done.slice(1).map(frame => frame.number),
         series: [{ label: 'frame', values: done.slice(1).map((frame, i) => (frame.doneNs - done[i]!.doneNs) / 1e6) }],
     }), [done]);
     const select = (from: number, to: number) => {
-        const first = done.find(frame => frame.frame >= from);
-        const last = [...done].reverse().find(frame => frame.frame <= to);
+        const first = done.find(frame => frame.number >= from);
+        const last = [...done].reverse().find(frame => frame.number <= to);
         if (first && last && last.doneNs > first.doneNs) change(() => ({ fromNs: first.doneNs, toNs: last.doneNs }));
     };
     const stages = summary.stages.filter(stage => stage.ms >= 0.005);

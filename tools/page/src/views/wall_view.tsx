@@ -3,7 +3,7 @@
 import { Picture } from '../parts/picture.tsx';
 import { StateMark, Shape, type Condition } from '../parts/state_mark.tsx';
 import { Table } from '../parts/table.tsx';
-import { count, duration, kNone, short } from '../parts/format.ts';
+import { count, duration, kNone, ms } from '../parts/format.ts';
 import { useCell, useClock } from '../session/cell.ts';
 import { conditionOf, outputCondition } from '../session/condition.ts';
 import { frameOf, partOf, percentOf, sizeText } from '../session/wall_geometry.ts';
@@ -126,7 +126,7 @@ export function WallView(props: ViewProps) {
                         { name: 'Picture', show: entry => <code title="hash of the picture">{entry.output?.hash.slice(0, 8) ?? kNone}</code> },
                         { name: 'Draws', isNumber: true, hint: 'replay per frame',
                             key: entry => session.history.latest?.nodes.get(entry.segment.node)?.replayMs ?? 0,
-                            show: entry => `${short(session.history.latest?.nodes.get(entry.segment.node)?.replayMs)} ms` },
+                            show: entry => ms(session.history.latest?.nodes.get(entry.segment.node)?.replayMs) },
                     ]} />
             )}
             {!status && <p class="empty">Waiting for the state of the session.</p>}
