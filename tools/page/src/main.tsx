@@ -1,6 +1,6 @@
 // Start of the page.
 
-import { render } from 'preact';
+import { options, render } from 'preact';
 import 'uplot/dist/uPlot.min.css';
 import './style/base.css';
 import './style/views.css';
@@ -16,6 +16,8 @@ function browserName(): string {
     return `${browser} on ${system}`;
 }
 
+// Messages that arrive within one frame of the browser cause one rendering, and none in a hidden tab.
+options.debounceRendering = callback => requestAnimationFrame(() => callback());
 const session = new Session(takeToken(), browserName());
 // A link that is opened in this tab carries another token, and changes only the fragment.
 addEventListener('hashchange', () => {

@@ -19,6 +19,7 @@ interface Props {
 }
 
 const kMostPixels = 4096;
+let isFirst = true;
 
 export function Picture({ hub, of, label, part, hasCursor, isPreviewOnly, isOneToOne, onSize }: Props) {
     const ref = useRef<HTMLCanvasElement>(null);
@@ -48,6 +49,8 @@ export function Picture({ hub, of, label, part, hasCursor, isPreviewOnly, isOneT
                 context.drawImage(cursor.picture, cursor.x * scale, cursor.y * scale, cursor.picture.width, cursor.picture.height);
             }
             canvas.dataset.frame = String(stream.frame);
+            if (isFirst) performance.mark('mural-first-picture');
+            isFirst = false;
             if (from.width !== lastWidth || from.height !== lastHeight) onSize?.((lastWidth = from.width), (lastHeight = from.height));
         };
         const want = () => {

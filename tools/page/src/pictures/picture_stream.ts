@@ -13,6 +13,8 @@ export interface Cursor {
 export interface StreamEvents {
     // A frame is complete in the canvas. `shownMs` is the time from its arrival to now.
     onShown(frame: number, lastInput: number, shownMs: number): void;
+    // No picture shows this frame. The server counts it as shown, and sends the next ones.
+    onDropped(frame: number): void;
     onKeyFrameWanted(): void;
     onVideoGivenUp(): void;
 }
@@ -88,13 +90,23 @@ export class PictureStream {
     private acceptVideo(part: PicturePart): void {
         this.video ??= new VideoPath({
             onPicture: (picture, frame) => this.drawVideo(picture, frame),
-            onKeyFrameWanted: () => this.events.onKeyFrameWanted(),
+            onKeyFrameWanted: () => {
+                this.dropArrivals();
+                this.events.onKeyFrameWanted();
+            },
             onGiveUp: () => this.events.onVideoGivenUp(),
         });
         this.arrivals.set(part.frame, { lastInput: part.lastInput, atMs: performance.now() });
         if (this.arrivals.size > kMostArrivals) this.arrivals.delete(this.arrivals.keys().next().value!);
         this.fitCanvas(part);
-        this.video.accept(part);
+        if (this.video.accept(part) || !this.arrivals.delete(part.frame)) return;
+        this.events.onDropped(part.frame);
+    }
+
+    private dropArrivals(): void {
+        const frames = [...this.arrivals.keys()];
+        this.arrivals.clear();
+        for (const frame of frames) this.events.onDropped(frame);
     }
 
     private drawVideo(picture: VideoFrame, frame: number): void {

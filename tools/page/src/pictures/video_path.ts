@@ -9,7 +9,7 @@ export interface VideoUnit {
 
 export interface VideoPathEvents {
     onPicture(picture: VideoFrame, frame: number): void;
-    // A new decoder waits for a key frame.
+    // The decoder has failed: no unit so far returns a picture. A new decoder waits for a key frame.
     onKeyFrameWanted(): void;
     onGiveUp(): void;
 }
@@ -53,11 +53,11 @@ export class VideoPath {
         this.watchdog = setInterval(() => this.watch(), 250);
     }
 
-    // Decodes a unit. The result comes later, and never blocks the caller.
-    accept(unit: VideoUnit): void {
-        if (this.failures >= kMostFailures) return;
+    // Decodes a unit. The result comes later, and never blocks the caller. Returns false for a unit without a result.
+    accept(unit: VideoUnit): boolean {
+        if (this.failures >= kMostFailures) return false;
         if (this.decoder && this.decoder.decodeQueueSize > kMostQueued) this.needsKeyFrame = true;
-        if (this.needsKeyFrame && !unit.isKeyFrame) return;
+        if (this.needsKeyFrame && !unit.isKeyFrame) return false;
         if (this.unitsSinceOutput++ === 0) this.firstUnansweredMs = performance.now();
         try {
             if (!this.decoder) this.decoder = this.makeDecoder(unit.payload);
@@ -70,8 +70,10 @@ export class VideoPath {
                     data: unit.payload,
                 }),
             );
+            return true;
         } catch {
             this.fail();
+            return false;
         }
     }
 

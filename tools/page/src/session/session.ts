@@ -42,7 +42,8 @@ export class Session {
     private readonly link: Connection;
     private canUseVideo = false;
     private lastNotice = 0;
-    private wallKey = '';
+    // State that the wall belongs to; empty: its request has failed; null: its first request is under way.
+    private wallKey: string | null = '';
     private timelineUsers = 0;
 
     constructor(private token: string, readonly name: string) {
@@ -166,6 +167,8 @@ export class Session {
             this.log.value = [];
             this.events.value = [];
         }
+        // Views that show the wall; the fragment is empty for the first of them.
+        this.pictures.onConnected(/^#?(wall|use|balance)?(\/|$)/.test(location.hash));
         this.welcome.value = welcome;
         this.subscribe('status', 1000);
         this.subscribe('events', 200);
@@ -173,8 +176,7 @@ export class Session {
         this.subscribe('outputs');
         if (this.may('operate')) this.subscribe('log', 300);
         if (this.timelineUsers > 0) this.subscribe('timeline', 500);
-        this.wallKey = '';
-        this.pictures.onConnected();
+        this.wallKey = null;
         void this.refreshWall();
     }
 
@@ -202,9 +204,9 @@ export class Session {
         this.history.add(status);
         this.status.value = status;
         const key = status.session + status.tiles + status.nodes.map(node => node.node).join();
-        if (key === this.wallKey) return;
+        const isStale = this.wallKey !== null && this.wallKey !== key;
         this.wallKey = key;
-        void this.refreshWall();
+        if (isStale) void this.refreshWall();
     }
 
     private onEvents(events: HeadEvent[]): void {

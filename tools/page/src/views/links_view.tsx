@@ -62,7 +62,7 @@ export function LinksView({ session }: ViewProps) {
     const [name, setName] = useState('');
     const [address, setAddress] = useState('');
     const load = () => session.request('links').then(result => setLinks(linksOf(result))).catch(() => setLinks([]));
-    useEffect(() => { void load(); }, [session, viewers]);
+    useEffect(() => { if (session.may('operate')) void load(); }, [session, viewers]);
     if (!session.may('operate')) return <p class="empty">This link does not manage links.</p>;
     const create = async (event: Event) => {
         event.preventDefault();
