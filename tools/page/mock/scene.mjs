@@ -130,9 +130,9 @@ export class Scene {
         const places = [[8, 8], [628, 8], [8, 368], [628, 368]];
         return {
             canvases: [{
-                name: 'wall', layout: 'whole', layouts: ['whole', '2D', 'DB'], sizeMm: [1240, 720], sizePx: [1280, 720],
+                name: 'wall', layout: 'whole', layouts: ['whole', '2D', 'off'], sizeMm: [1240, 720], sizePx: [1280, 720],
                 segments: this.names.map((name, i) => ({
-                    name, turn: 0, node: this.status.nodes[i]?.node ?? i, channel: name,
+                    name: i === 3 ? '' : name, turn: 0, node: this.status.nodes[i]?.node ?? i, channel: name,
                     rectMm: [places[i][0], places[i][1], 604, 344],
                     rectPx: [i % 2 ? 648 : 8, i < 2 ? 8 : 368, 623, 344],
                 })),

@@ -80,7 +80,7 @@ export class Mock {
     serve(request, response) {
         const path = request.url.split('?')[0];
         const headers = {
-            'Content-Security-Policy': "default-src 'self'", 'Cache-Control': 'no-store', 'X-Content-Type-Options': 'nosniff',
+            'Content-Security-Policy': "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'", 'Cache-Control': 'no-store', 'X-Content-Type-Options': 'nosniff',
             'Referrer-Policy': 'no-referrer',
         };
         if (path.startsWith('/api/')) return this.serveDocument(path, request, response, headers);

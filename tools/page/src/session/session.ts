@@ -10,6 +10,7 @@ import { Cell } from './cell.ts';
 import { FrameStore } from './frame_store.ts';
 import { History } from './history.ts';
 import { InputClock } from './input_clock.ts';
+import { withNames } from './wall_geometry.ts';
 
 export interface Notice {
     id: number;
@@ -155,7 +156,7 @@ export class Session {
 
     async refreshWall(): Promise<void> {
         try {
-            this.wall.value = await this.request<Wall>('wall');
+            this.wall.value = withNames(await this.request<Wall>('wall'));
         } catch {
             this.wallKey = '';
         }
@@ -217,12 +218,13 @@ export class Session {
 }
 
 async function errorOf(response: Response): Promise<string> {
+    const text = await response.text().catch(() => '');
     try {
-        const text = await response.text();
-        const error = JSON.parse(text).error;
+        const { error } = JSON.parse(text);
         if (typeof error === 'string') return error;
     } catch {
-        // No JSON: the status line is the reason.
+        // A short text is the reason itself.
+        if (text && text.length < 300 && !text.startsWith('<')) return text.trim();
     }
     return `${response.status} ${response.statusText}`.trim();
 }

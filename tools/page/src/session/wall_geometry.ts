@@ -32,6 +32,21 @@ export function partOf(segment: Segment, canvas: Canvas): Rect {
     return [x / width, y / height, w / width, h / height];
 }
 
+// Returns the wall with a name for each segment, and -1 for segments without a node.
+export function withNames(wall: Wall): Wall {
+    return {
+        ...wall,
+        canvases: wall.canvases.map(canvas => ({
+            ...canvas,
+            segments: canvas.segments.map((segment, i) => ({
+                ...segment,
+                name: segment.name || segment.channel || `segment ${i + 1}`,
+                node: segment.node ?? -1,
+            })),
+        })),
+    };
+}
+
 export function segmentsOfNode(wall: Wall | null, node: number): Segment[] {
     return (wall?.canvases ?? []).flatMap(canvas => canvas.segments.filter(segment => segment.node === node));
 }

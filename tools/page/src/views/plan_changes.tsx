@@ -63,7 +63,7 @@ export function LayoutChange({ session }: { session: Session }) {
     const choices = (wall?.canvases ?? []).filter(entry => entry.layouts.length > 0);
     const selected = choices.find(entry => entry.name === canvas) ?? choices[0];
     if (!selected) return <p class="faint">This session has no canvases with layouts.</p>;
-    const wanted = layout || selected.layout;
+    const wanted = layout || selected.layout || 'off';
     return (
         <form onSubmit={event => event.preventDefault()}>
             <div class="parameters">
@@ -74,7 +74,7 @@ export function LayoutChange({ session }: { session: Session }) {
                 </label>
                 <label class="row">layout
                     <select value={wanted} onChange={event => setLayout(event.currentTarget.value)}>
-                        {[...selected.layouts, 'off'].map(name => <option key={name}>{name}</option>)}
+                        {[...new Set([...selected.layouts, 'off'])].map(name => <option key={name}>{name}</option>)}
                     </select>
                 </label>
             </div>

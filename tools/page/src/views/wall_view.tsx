@@ -57,11 +57,11 @@ function behindText(behind: number): string {
 
 function SegmentTile({ shown, frame, props }: { shown: Shown; frame: ReturnType<typeof frameOf>; props: ViewProps }) {
     const { canvas, segment, output, condition, node, behind, ageSeconds } = shown;
-    const label = `${segment.name}, node ${segment.node}, ${condition.word}`
+    const label = `${segment.name}, ${segment.node < 0 ? '' : `node ${segment.node}, `}${condition.word}`
         + (output ? `, frame ${output.frame}, picture confirmed ${duration(ageSeconds)} ago` : '');
     return (
         <button class={`segment ${condition.mark}`} style={percentOf(segment.rectMm, frame)} aria-label={label}
-            onClick={() => props.openNode(segment.node)}>
+            disabled={segment.node < 0} onClick={() => props.openNode(segment.node)}>
             <Picture hub={props.session.pictures} of="wall" part={partOf(segment, canvas)} isPreviewOnly label="" />
             <span class="segment-line">
                 <Shape mark={condition.mark} />
@@ -113,7 +113,7 @@ export function WallView(props: ViewProps) {
                     empty="No outputs."
                     columns={[
                         { name: 'Segment', key: entry => entry.segment.name, show: entry => entry.segment.name },
-                        { name: 'Node', key: entry => entry.segment.node, show: entry => (
+                        { name: 'Node', key: entry => entry.segment.node, show: entry => entry.segment.node < 0 ? kNone : (
                             <button class="link" onClick={() => props.openNode(entry.segment.node)}>node {entry.segment.node}</button>
                         ) },
                         { name: 'State', key: entry => entry.condition.word, show: entry => <StateMark {...entry.condition} /> },

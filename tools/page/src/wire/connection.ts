@@ -37,6 +37,8 @@ interface Pending {
 
 // Close code of a token that the server does not accept.
 export const kRefusedCode = 4401;
+const kTooManyCode = 4429;
+const kReasons: Record<number, string> = { 4410: 'the session has ended', [kTooManyCode]: 'this link has too many open pages' };
 const kDelaysMs = [500, 1000, 2000, 4000, 8000, 15000];
 const kGreetingMs = 8000;
 const kPingMs = 5000;
@@ -185,8 +187,9 @@ export class Connection {
             this.report('refused', reason || 'this link is unknown, expired or revoked');
             return;
         }
+        if (code === kTooManyCode) this.attempt = kDelaysMs.length;
         const delay = retryDelayMs(this.attempt++);
-        this.report('lost', reason || 'the connection ended', performance.now() + delay);
+        this.report('lost', reason || kReasons[code] || 'the connection ended', performance.now() + delay);
         this.later(delay, () => this.connect());
     }
 

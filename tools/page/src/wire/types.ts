@@ -86,6 +86,7 @@ export interface Segment {
     name: string;
     rectMm: Rect;
     turn: number;
+    // The server sends null for a segment without a node.
     node: number;
     channel: string;
     rectPx: Rect;
@@ -93,7 +94,7 @@ export interface Segment {
 
 export interface Canvas {
     name: string;
-    layout: string;
+    layout: string | null;
     layouts: string[];
     sizeMm: [number, number];
     sizePx: [number, number];
