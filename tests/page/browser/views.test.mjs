@@ -126,6 +126,7 @@ test('a new user finds the slow node, its reason, and its restart', async () => 
     await page.waitForSelector('.drawer .state.warn');
     const text = await page.innerText('.drawer');
     assert.match(text, /slow/);
+    assert.match(text, /Replay takes [\d.]+ ms per frame; the median of the other nodes is/);
     assert.match(text, /Replay\s+\d/);
     mock.requests.length = 0;
     await page.click('.drawer button:text("Restart")');

@@ -1,7 +1,8 @@
-// The condition of a node and of an output in one word. Pure.
+// The condition of a node and of an output in one word, and its reason in one line. Pure.
 
 import type { Condition } from '../parts/state_mark.tsx';
-import type { NodeStatus, Output, Status } from '../wire/types.ts';
+import { duration, ms } from '../parts/format.ts';
+import type { HeadEvent, LogLine, NodeStatus, Output, Status } from '../wire/types.ts';
 import type { Rates } from './history.ts';
 
 // Silence of a node, or age of an output's picture, from which it counts as a fault in s.
@@ -10,12 +11,28 @@ const kSilentSeconds = 3;
 const kSlowRatio = 1.6;
 const kSlowMs = 4;
 
-export function isSlow(node: number, rates: Rates | null): boolean {
-    const mine = rates?.nodes.get(node)?.replayMs ?? NaN;
-    if (!rates || !(mine >= kSlowMs)) return false;
+// Returns the median replay time per frame of the other nodes in ms; NaN: there are none.
+function medianOfOthers(node: number, rates: Rates): number {
     const others = [...rates.nodes].filter(([other, rate]) => other !== node && rate.replayMs > 0).map(([, rate]) => rate.replayMs);
     others.sort((a, b) => a - b);
-    return others.length > 0 && mine > kSlowRatio * others[others.length >> 1]!;
+    return others[others.length >> 1] ?? NaN;
+}
+
+export function isSlow(node: number, rates: Rates | null): boolean {
+    const mine = rates?.nodes.get(node)?.replayMs ?? NaN;
+    return rates !== null && mine >= kSlowMs && mine > kSlowRatio * medianOfOthers(node, rates);
+}
+
+// Returns the reason of a condition that needs attention; empty: none is known.
+export function reasonOf(node: NodeStatus, rates: Rates | null, events: HeadEvent[], log: LogLine[]): string {
+    const { word } = conditionOf(node, rates);
+    if (word === 'slow')
+        return `Replay takes ${ms(rates!.nodes.get(node.node)!.replayMs)} per frame; the median of the other nodes is ${ms(medianOfOthers(node.node, rates!))}.`;
+    if (word === 'silent') return `No message for ${duration(node.silentSeconds)}.`;
+    if (word !== 'lost' && word !== 'rejoining') return '';
+    const event = events.filter(entry => entry.event === 'node-lost' && entry.node === node.node).pop();
+    if (typeof event?.text === 'string') return event.text;
+    return log.filter(line => line.text.startsWith(`node ${node.node} `) && line.text.includes('lost')).pop()?.text ?? '';
 }
 
 export function conditionOf(node: NodeStatus, rates: Rates | null): Condition {

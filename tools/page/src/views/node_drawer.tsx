@@ -8,7 +8,7 @@ import { Picture } from '../parts/picture.tsx';
 import { Spark } from '../parts/spark.tsx';
 import { StateMark } from '../parts/state_mark.tsx';
 import { useCell } from '../session/cell.ts';
-import { conditionOf } from '../session/condition.ts';
+import { conditionOf, reasonOf } from '../session/condition.ts';
 import type { Session } from '../session/session.ts';
 import { partOf, segmentsOfNode } from '../session/wall_geometry.ts';
 import { OperationError } from '../wire/connection.ts';
@@ -18,6 +18,10 @@ const kLogLines = 60;
 const kLogMs = 4000;
 const kIdentifyMs = 8000;
 
+function perFrame(value: number | undefined): string {
+    return Number.isFinite(value) ? `${ms(value)} per frame` : kNone;
+}
+
 function Facts({ node, session }: { node: NodeStatus; session: Session }) {
     const rates = session.history.latest?.nodes.get(node.node);
     const clock = session.frames.clocks.find(entry => entry.node === node.node);
@@ -25,8 +29,8 @@ function Facts({ node, session }: { node: NodeStatus; session: Session }) {
         ['Host', `${node.where}, pid ${node.pid}`],
         ['GPU', node.gl || kNone],
         ['Frames', `${count(node.frames)}, ${short(rates?.framesPerSecond)} per s`],
-        ['Replay', `${ms(rates?.replayMs)} per frame`],
-        ['Readback', `${ms(rates?.readbackMs)} per frame`],
+        ['Replay', perFrame(rates?.replayMs)],
+        ['Readback', perFrame(rates?.readbackMs)],
         ['Pictures', `${byteRate(rates?.pictureBytes)} of ${byteRate(rates?.pictureRawBytes)} raw`],
         ['Stream', node.stream],
         ['Last message', `${duration(node.silentSeconds)} ago`],
@@ -131,6 +135,7 @@ export function NodeDrawer({ session, node: number, onClose }: { session: Sessio
     useEffect(() => close.current?.focus(), [number]);
     const node = status?.nodes.find(entry => entry.node === number);
     const rates = session.history.rates;
+    const reason = node ? reasonOf(node, session.history.latest, session.events.value, session.log.value) : '';
     const segments = segmentsOfNode(wall, number);
     const segment = segments[0];
     const canvas = segment && wall!.canvases.find(entry => entry.segments.includes(segment));
@@ -142,6 +147,7 @@ export function NodeDrawer({ session, node: number, onClose }: { session: Sessio
                 {node && <StateMark {...conditionOf(node, session.history.latest)} />}
                 <button ref={close} class="icon" aria-label="Close" onClick={onClose}>✕</button>
             </header>
+            {reason && <p class="reason">{reason}</p>}
             {segments.length > 0 && <p class="faint">{segments.map(entry => entry.name
                 + (entry.turn ? `, turned ${entry.turn}°` : '')).join(' · ')}</p>}
             {canvas && segment && <div class="drawer-picture" style={{ aspectRatio: `${segment.rectPx[2]} / ${segment.rectPx[3]}` }}>

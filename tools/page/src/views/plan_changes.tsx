@@ -133,7 +133,9 @@ export function PlanOptions({ session }: { session: Session }) {
 // The decision about a change on trial. All views show it, because it reverts by itself.
 export function TrialBanner({ session }: { session: Session }) {
     const status = useCell(session.status);
+    const connection = useCell(session.connection);
     const left = status?.revertsInSeconds;
+    if (connection.phase !== 'open') return null;
     if (left === null || left === undefined) return null;
     return (
         <div class="banner warn" role="alert">

@@ -42,9 +42,11 @@ function useShown({ session }: ViewProps): Shown[] {
         const ofNode = node ? conditionOf(node, session.history.latest) : { mark: 'idle' as const, word: 'no node' };
         const ofOutput = outputCondition(output, waited);
         const isNodeFirst = ofNode.mark === 'bad' || ofNode.mark === 'idle' || ofOutput?.mark !== 'bad';
+        const condition = isNodeFirst ? ofNode : ofOutput!;
         return {
             canvas, segment, node, output,
-            condition: isNodeFirst ? ofNode : ofOutput!,
+            // Without a connection the page knows only the past.
+            condition: connection.phase === 'open' ? condition : { mark: 'idle' as const, word: `was ${condition.word}` },
             behind: output ? newest - output.frame : NaN,
             ageSeconds: output ? output.ageSeconds + waited : NaN,
         };
