@@ -60,7 +60,9 @@ test('a link appears once with its QR code, and is revoked', () => onPage('links
     assert.match(await page.inputValue('.new-link input'), /^http:\/\/127\.0\.0\.1:\d+\/#t=[\w-]{43}$/);
     assert.deepEqual(sent('link-new'), [{ role: 'input', seconds: 28800, most: 20, name: 'Größe' }]);
     await page.click('.new-link button:text("Done")');
+    await page.waitForSelector('.new-link', { state: 'detached' });
     assert.ok(!(await page.content()).includes('#t='));
+    assert.equal(sent('link-new').length, 1);
     await page.click('button:text("Revoke")');
     await page.click('button:text("Close its pages")');
     await until(() => sent('link-revoke').length === 1, 'link-revoke');

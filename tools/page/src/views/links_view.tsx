@@ -38,8 +38,8 @@ function NewLink({ address, onClose, onCopy }: { address: string; onClose(): voi
                 <p><b>This link appears only once.</b> The list below never shows its secret part.</p>
                 <input readOnly aria-label="Address of the new link" value={address} onFocus={event => event.currentTarget.select()} />
                 <div class="buttons">
-                    {navigator.clipboard && <button onClick={onCopy}>Copy</button>}
-                    <button onClick={onClose}>Done</button>
+                    {navigator.clipboard && <button type="button" onClick={onCopy}>Copy</button>}
+                    <button type="button" onClick={onClose}>Done</button>
                 </div>
             </div>
         </div>
