@@ -16,7 +16,9 @@ interface Shown {
     node: NodeStatus | undefined;
     output: Output | undefined;
     condition: Condition;
-    // Frames behind the newest output; NaN: unknown.
+    // Frame that the output shows, or that its node has finished, if the output has no proof of life; NaN: unknown.
+    frame: number;
+    // Frames behind the newest one; NaN: unknown.
     behind: number;
     ageSeconds: number;
 }
@@ -35,19 +37,20 @@ function useShown({ session }: ViewProps): Shown[] {
     useClock(1000);
     // Ages grow while no message arrives. Without a connection they say nothing about the wall.
     const waited = connection.phase === 'open' ? Math.max(0, (performance.now() - session.outputsAtMs) / 1000 - 1.5) : 0;
-    const newest = Math.max(...outputs.map(output => output.frame));
+    const newest = Math.max(...(outputs.length ? outputs.map(output => output.frame) : (status?.nodes ?? []).map(node => node.frames)));
     return (wall?.canvases ?? []).flatMap(canvas => canvas.segments.map(segment => {
         const node = status?.nodes.find(entry => entry.node === segment.node);
         const output = outputOf(segment, outputs);
         const ofNode = node ? conditionOf(node, session.history.latest) : { mark: 'idle' as const, word: 'no node' };
         const ofOutput = outputCondition(output, waited);
         const isNodeFirst = ofNode.mark === 'bad' || ofNode.mark === 'idle' || ofOutput?.mark !== 'bad';
+        const frame = outputs.length ? output?.frame ?? NaN : node?.frames ?? NaN;
         const condition = isNodeFirst ? ofNode : ofOutput!;
         return {
             canvas, segment, node, output,
             // Without a connection the page knows only the past.
             condition: connection.phase === 'open' ? condition : { mark: 'idle' as const, word: `was ${condition.word}` },
-            behind: output ? newest - output.frame : NaN,
+            frame, behind: newest - frame,
             ageSeconds: output ? output.ageSeconds + waited : NaN,
         };
     }));
@@ -58,7 +61,7 @@ function behindText(behind: number): string {
 }
 
 function SegmentTile({ shown, frame, props }: { shown: Shown; frame: ReturnType<typeof frameOf>; props: ViewProps }) {
-    const { canvas, segment, output, condition, node, behind, ageSeconds } = shown;
+    const { canvas, segment, output, condition, behind, ageSeconds } = shown;
     const label = `${segment.name}, ${segment.node < 0 ? '' : `node ${segment.node}, `}${condition.word}`
         + (output ? `, frame ${output.frame}, picture confirmed ${duration(ageSeconds)} ago` : '');
     return (
@@ -70,7 +73,7 @@ function SegmentTile({ shown, frame, props }: { shown: Shown; frame: ReturnType<
                 <b>{segment.name}</b>
                 <span class="segment-word">{condition.word}</span>
                 <span class="segment-facts">
-                    {output ? `#${output.frame}` : node ? `#${node.frames}` : ''}
+                    {Number.isFinite(shown.frame) ? `#${shown.frame}` : ''}
                     {behind > 0 ? ` (${behindText(behind)})` : ''}
                     {output ? ` · ${duration(ageSeconds)}` : ''}
                 </span>
@@ -119,7 +122,7 @@ export function WallView(props: ViewProps) {
                             <button class="link" onClick={() => props.openNode(entry.segment.node)}>node {entry.segment.node}</button>
                         ) },
                         { name: 'State', key: entry => entry.condition.word, show: entry => <StateMark {...entry.condition} /> },
-                        { name: 'Frame', isNumber: true, key: entry => entry.output?.frame ?? 0, show: entry => count(entry.output?.frame) },
+                        { name: 'Frame', isNumber: true, key: entry => entry.frame, show: entry => count(entry.frame) },
                         { name: 'Skew', isNumber: true, key: entry => entry.behind, hint: 'frames behind the newest output',
                             show: entry => behindText(entry.behind) },
                         { name: 'Confirmed', isNumber: true, key: entry => entry.ageSeconds,
