@@ -9,11 +9,21 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kMaxDepth = 16; // copies of deeper values need much stack
 constexpr const char* kForm = R"(; send {"id":1,"op":"help"})";
 
-// Returns the depth of nested brackets outside of strings. Accepts any bytes.
-int depthOf(std::string_view line) {
+std::string problemOf(const Json& request) {
+    for (const auto& [name, value] : request.items())
+        if (name != "id" && name != "op" && name != "args") return "a request has the members id, op and args only";
+    if (const auto id = request.find("id"); id == request.end() || !id->is_number_integer())
+        return "the member id of a request must be a whole number";
+    if (const auto op = request.find("op"); op == request.end() || !op->is_string())
+        return "the member op of a request must be the name of an operation";
+    return "";
+}
+
+} // namespace
+
+int depthOfJson(std::string_view line) {
     int depth = 0, deepest = 0;
     bool inString = false;
     for (size_t i = 0; i < line.size(); ++i) {
@@ -30,22 +40,10 @@ int depthOf(std::string_view line) {
     return deepest;
 }
 
-std::string problemOf(const Json& request) {
-    for (const auto& [name, value] : request.items())
-        if (name != "id" && name != "op" && name != "args") return "a request has the members id, op and args only";
-    if (const auto id = request.find("id"); id == request.end() || !id->is_number_integer())
-        return "the member id of a request must be a whole number";
-    if (const auto op = request.find("op"); op == request.end() || !op->is_string())
-        return "the member op of a request must be the name of an operation";
-    return "";
-}
-
-} // namespace
-
 ControlRequest parseControlRequest(std::string_view line) {
     ControlRequest request;
-    if (depthOf(line) > kMaxDepth) {
-        request.problem = "a request may nest " + std::to_string(kMaxDepth) + " levels of values at most";
+    if (depthOfJson(line) > kMaxControlDepth) {
+        request.problem = "a request may nest " + std::to_string(kMaxControlDepth) + " levels of values at most";
         return request;
     }
     Json json = parseJson(line);

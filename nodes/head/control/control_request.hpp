@@ -14,6 +14,11 @@ struct ControlRequest {
     std::string problem; // why the line is no request; empty: it is one
 };
 
+inline constexpr int kMaxControlDepth = 16; // copies of deeper values need much stack
+
+// Returns the depth of nested brackets outside of strings. Accepts any bytes.
+int depthOfJson(std::string_view line);
+
 // Parses {"id": 1, "op": "status", "args": {}}. Accepts any bytes.
 ControlRequest parseControlRequest(std::string_view line);
 
