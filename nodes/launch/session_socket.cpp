@@ -21,6 +21,8 @@ namespace {
 constexpr const char* kTemporary = "/tmp";
 constexpr const char* kFileName = "/socket";
 constexpr const char* kControlName = "/control";
+constexpr const char* kPicturesName = "/pictures";
+constexpr const char* kPageName = "/page";
 constexpr time_t kMinAgeS = 10; // the head of a newer folder may not have opened its socket yet
 
 std::string folderOf(const std::string& path) { return path.substr(0, path.rfind('/')); }
@@ -65,9 +67,14 @@ SessionSocket::~SessionSocket() { removeSessionSocket(path_); }
 
 std::string controlSocketOf(const std::string& sessionSocket) { return folderOf(sessionSocket) + kControlName; }
 
+std::string pictureSocketOf(const std::string& sessionSocket) { return folderOf(sessionSocket) + kPicturesName; }
+
+std::string pageSocketOf(const std::string& sessionSocket) { return folderOf(sessionSocket) + kPageName; }
+
 void removeSessionSocket(const std::string& path) {
     unlink(path.c_str());
-    unlink(controlSocketOf(path).c_str());
+    for (const std::string& other : {controlSocketOf(path), pictureSocketOf(path), pageSocketOf(path)})
+        unlink(other.c_str());
     rmdir(folderOf(path).c_str());
 }
 

@@ -1,4 +1,5 @@
-// The session's sockets in the file system: one for programs, in addition to the abstract one, and the control socket.
+// The session's sockets in the file system: one for programs, in addition to the abstract one, the control socket, and
+// those of pages.
 // Programs in another network namespace (sandboxes) cannot reach an abstract socket. Each session has its own folder,
 // which only its user may enter.
 #pragma once
@@ -30,7 +31,11 @@ private:
 
 // Returns the path of the control socket, in the folder of the session's socket.
 std::string controlSocketOf(const std::string& sessionSocket);
-// Removes both sockets and their folder. Idempotent.
+// The same for the socket on which the head gives pictures to pages (nodes/head/preview)…
+std::string pictureSocketOf(const std::string& sessionSocket);
+// …and for the one on which the session's page accepts requests of `mural page`.
+std::string pageSocketOf(const std::string& sessionSocket);
+// Removes the sockets and their folder. Idempotent.
 void removeSessionSocket(const std::string& path);
 // Removes the folders of sessions in `folder` that this user owns and no head listens in any more.
 void removeStaleSockets(const std::string& folder);

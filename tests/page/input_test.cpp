@@ -22,7 +22,7 @@ TEST(InputLease, viewersNeverPass) {
     }
 }
 
-TEST(InputLease, aClickTakesAnIdleLease) {
+TEST(InputLease, givesAnIdleLeaseToAClick) {
     InputLease lease(InputMode::Click);
     EXPECT_FALSE(lease.passes(1, Role::Input, false, false, kS)); // a move takes nothing
     EXPECT_TRUE(lease.passes(1, Role::Input, true, false, kS));
@@ -75,7 +75,7 @@ TEST(WheelSteps, gathersParts) {
     EXPECT_LE(wheelSteps(rest, 12000).size(), 20U);
 }
 
-TEST(Keysyms, ofBrowserKeys) {
+TEST(Keysyms, mapsBrowserKeys) {
     EXPECT_EQ(keysymOfKey("a", "KeyA"), Keysym{'a'});
     EXPECT_EQ(keysymOfKey("A", "KeyA"), Keysym{'A'});
     EXPECT_EQ(keysymOfKey("\xc3\xa4", "Quote"), 0xe4U);          // ä

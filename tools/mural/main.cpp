@@ -33,6 +33,7 @@
 #include "tools/mural/hosts/hosts_doctor.hpp"
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
+#include "tools/mural/page/page_command.hpp"
 #include "tools/mural/simulate/simulate_command.hpp"
 #include "tools/mural/run/slurm_allocation.hpp"
 #include "tools/mural/version_details.hpp"
@@ -100,6 +101,7 @@ public:
                                      ? " -- PROGRAM ARGUMENTS..."
                                  : app->get_name() == "ctl"    ? " [SESSION] COMMAND..."
                                  : app->get_name() == "change" ? " [SESSION]"
+                                 : app->get_name() == "page"   ? " [SESSION | COMMAND]"
                                  : app->get_name() == "bench"  ? " accuracy [-- PROGRAM ARGUMENTS...]"
                                  : app->get_name() == "replay" || app->get_name() == "dump" ? " FILE"
                                  : app->get_name() == "trim"                                ? " FILE FRAMES"
@@ -305,6 +307,10 @@ private:
             "ctl", "request an operation of a running session: state, nodes, log, equalizers, end",
             [this] { return runCtl(); }, mural::cli::kCtlFooter);
         mural::cli::describeCtl(ctl, ctl_);
+        CLI::App& page = add(
+            "page", "show, explain and operate a running session in a browser",
+            [this] { return mural::page::pageCommand(page_); }, mural::page::kPageFooter);
+        mural::page::describePage(page, page_);
         CLI::App& change = add(
             "change", "divide the work of a running session in another way",
             [this] { return mural::cli::changeCommand(change_); }, mural::cli::kChangeFooter);
@@ -496,6 +502,7 @@ private:
     mural::cli::StatOptions stat_;
     mural::cli::ChangeArguments change_;
     mural::cli::CtlArguments ctl_;
+    mural::page::PageArguments page_;
     mural::cli::BenchArguments bench_;
     mural::cli::ConfigArguments config_;
     mural::cli::SimulateArguments simulate_;

@@ -82,6 +82,7 @@ void FrameTracker::nodeJoined(int node, const std::vector<wire::ClientFrame>& be
 void FrameTracker::clientGone(uint32_t id) {
     const std::lock_guard lock(mutex_);
     mainWindow_.clientGone(id);
+    if (shown_.client == id) shown_ = {};
 }
 
 void FrameTracker::windowGone(uint32_t id, uint32_t window) {
@@ -98,6 +99,11 @@ void FrameTracker::delayPicture(uint32_t id, uint32_t frame) {
 void FrameTracker::isOn(uint32_t id, uint32_t window, uint64_t native) {
     const std::lock_guard lock(mutex_);
     client(id).natives[window] = native;
+}
+
+FrameTracker::ShownWindow FrameTracker::shownWindow() const {
+    const std::lock_guard lock(mutex_);
+    return shown_;
 }
 
 uint64_t FrameTracker::nativeOf(uint32_t id, uint32_t window) const {
@@ -142,9 +148,9 @@ void FrameTracker::giveCredit(uint32_t id, Client& c) {
 void FrameTracker::count(uint32_t id, const Window& window, int64_t nowNs) {
     const auto& natives = client(id).natives;
     const auto native = natives.find(window.id);
-    if (mainWindow_.swapped(id, window.id, window.width, window.height, native == natives.end() ? 0 : native->second) ==
-        0)
-        return;
+    const uint64_t onDisplay = native == natives.end() ? 0 : native->second;
+    if (mainWindow_.swapped(id, window.id, window.width, window.height, onDisplay) == 0) return;
+    shown_ = {id, onDisplay};
     if (totals_.wallFrames++ == 0) totals_.firstNs = nowNs;
     totals_.latestNs = nowNs;
 }

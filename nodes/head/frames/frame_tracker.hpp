@@ -51,6 +51,13 @@ public:
     // Sets the X window of a window. Several drawables may belong to one X window.
     void isOn(uint32_t client, uint32_t window, uint64_t native);
     [[nodiscard]] uint64_t nativeOf(uint32_t client, uint32_t window) const; // 0: unknown
+    // The program whose window the wall has shown last, and its X window, which is known while the head receives
+    // pictures. client 0: none.
+    struct ShownWindow {
+        uint32_t client = 0;
+        uint64_t native = 0;
+    };
+    [[nodiscard]] ShownWindow shownWindow() const;
     void pictureReleased(uint32_t client, uint32_t frame);
 
     [[nodiscard]] ClientProgress progressOf(uint32_t client) const;
@@ -93,6 +100,7 @@ private:
     std::vector<int64_t> framesOf_;
     std::map<uint32_t, Client> clients_;
     MainWindow mainWindow_;
+    ShownWindow shown_;
     FrameTotals totals_;
 };
 

@@ -130,6 +130,7 @@ void PictureOutput::show(const WindowPicture& picture) {
                                                   static_cast<uint32_t>(view.height), picture.nativeWindow);
     const bool inTime = config_.lastFrame == 0 || wallFrame <= config_.lastFrame;
     const bool wanted = wallFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(wallFrame));
+    if (wallFrame > 0 && config_.offerToPages) config_.offerToPages(wallFrame, picture.picture);
     if (wanted && file_ && !fileFailed_) save(wallFrame, view);
     if (wallFrame > 0 && config_.openWall && picture.isOnWall) showOnWall(wallFrame, view);
     for (size_t i = 0; wallFrame > 0 && i < std::min(canvases_.size(), picture.others.size()); ++i)

@@ -54,6 +54,8 @@ struct PictureOutputConfig {
     std::optional<OverlayPlace> overlayInFiles;
     std::function<bool(uint32_t client)> beginOverlay = [](uint32_t) { return true; };
     std::function<void(uint32_t client)> endOverlay = [](uint32_t) {};
+    // Called with each picture of the wall. Must not block. May be empty.
+    std::function<void(int64_t wallFrame, const std::shared_ptr<const OwnedPicture>& picture)> offerToPages;
     // Called when a picture was passed to all its outputs, by any thread of the output.
     std::function<void(uint32_t client, uint32_t frame)> done;
 };

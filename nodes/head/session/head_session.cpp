@@ -120,7 +120,8 @@ HeadSession::~HeadSession() {
     returns_->stop([] {});
     if (programs_) programs_->endAll();
     nodes_.end();
-    output_.reset(); // its thread calls the program table
+    output_.reset();  // its thread calls the program table
+    preview_.reset(); // its thread reads the plan
 }
 
 int HeadSession::run() {

@@ -39,6 +39,7 @@
 #include "nodes/head/frames/picture_output.hpp"
 #include "nodes/head/capture/program_table.hpp"
 #include "nodes/head/planning/plan_change.hpp"
+#include "nodes/head/preview/preview_server.hpp"
 #include "nodes/head/recording/session_recording.hpp"
 #include "nodes/head/session/session_report.hpp"
 #include "nodes/head/session/session_status.hpp"
@@ -164,7 +165,10 @@ private:
 
     // The control interface (head_session_control.cpp). The control thread calls the operations.
     void openControl();
+    void openPreview();
+    [[nodiscard]] std::optional<Viewport> areaOnWall(int node) const; // of the first canvas
     ControlOperations controlOperations();
+    Result<nlohmann::json> programWindow();
     void addNodeOperations(ControlOperations& operations);
     // Changes to the running session (head_session_changes.cpp).
     void addChangeOperations(ControlOperations& operations);
@@ -291,7 +295,8 @@ private:
     FrameTracker frames_;
     ReplyAssembler answers_;
     DriverEventMerger driverEvents_;
-    std::unique_ptr<PictureOutput> output_; // null: the head receives no pictures
+    std::unique_ptr<PreviewServer> preview_; // null: the head receives no pictures, or has no socket for pages
+    std::unique_ptr<PictureOutput> output_;  // null: the head receives no pictures
     PlanSequence plans_;
     BalancerControl equalizers_{[this] { return balancer(); }};
     SlowdownAdvice advice_;

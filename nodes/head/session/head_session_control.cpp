@@ -58,6 +58,28 @@ void HeadSession::openControl() {
         log::warning(log::Topic::Session, started.error().message);
 }
 
+void HeadSession::openPreview() {
+    if (config_.socketPath.empty() || !output_) return;
+    auto started = PreviewServer::start(launch::pictureSocketOf(config_.socketPath),
+                                        [this](int node) { return areaOnWall(node); });
+    if (started)
+        preview_ = std::move(*started);
+    else
+        log::warning(log::Topic::Session, started.error().message);
+}
+
+std::optional<Viewport> HeadSession::areaOnWall(int node) const {
+    const auto stage = plans_.current();
+    if (node < 0 || static_cast<size_t>(node) >= stage->plan.nodes.size()) return std::nullopt;
+    const NodePlan& plan = stage->plan.nodes[static_cast<size_t>(node)];
+    if (plan.isVacant || plan.canvas != 0) return std::nullopt;
+    if (plan.shown) return plan.shown;
+    if (plan.area) return plan.area;
+    const double columns = stage->config.columns, rows = stage->config.rows;
+    return Viewport{plan.region.column / columns, plan.region.row / rows, plan.region.columns / columns,
+                    plan.region.rows / rows};
+}
+
 ControlOperations HeadSession::controlOperations() {
     ControlOperations all;
     all.add({"status", "", "the state of programs and nodes, as mural stat shows it", {}, [this](const Json&) {
@@ -76,6 +98,11 @@ ControlOperations HeadSession::controlOperations() {
                  announce({{"event", "stop-requested"}});
                  return Result<Json>(Json::object());
              }});
+    all.add({"program-window",
+             "",
+             "the program whose picture the wall shows, its X display, and its window there",
+             {},
+             [this](const Json&) { return programWindow(); }});
     addNodeOperations(all);
     addStopOperations(all);
     addChangeOperations(all);
@@ -84,6 +111,18 @@ ControlOperations HeadSession::controlOperations() {
     addFramesOperation(all);
     addEqualizerOperations(all, equalizers_); // a later plan may have equalizers
     return all;
+}
+
+Result<Json> HeadSession::programWindow() {
+    const FrameTracker::ShownWindow shown = frames_.shownWindow();
+    if (shown.client == 0) return Error{"no program draws at the moment; start one, or wait for its first frame"};
+    const auto programs = programs_->status();
+    const auto program = std::ranges::find(programs, shown.client, &ProgramStatus::id);
+    const auto window = nativeWindowOf(shown.client, 0, shown.native);
+    return Json{{"client", shown.client},
+                {"pid", program != programs.end() ? Json(program->pid) : Json()},
+                {"display", window ? window->display : ""},
+                {"window", window ? window->id : 0}};
 }
 
 void HeadSession::addNodeOperations(ControlOperations& operations) {

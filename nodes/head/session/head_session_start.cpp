@@ -67,6 +67,7 @@ Result<void> HeadSession::bringUp() {
     measureClocks();
     openTables();
     goOnWithoutAbsent();
+    openPreview();
     auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_);
     if (!server) return server.error();
     server_ = std::move(*server);
@@ -104,6 +105,9 @@ PictureOutputConfig HeadSession::outputConfig() {
         if (headShowsCanvas(config_, other))
             canvas.openWall = [this, place = WallPlace{other.offsetX, other.size}] { return options_.openWall(place); };
     }
+    output.offerToPages = [this](int64_t frame, const std::shared_ptr<const OwnedPicture>& picture) {
+        if (preview_) preview_->offer(frame, picture);
+    };
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
     output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
     output.giveToProgram = [this](const WindowPicture& picture, const Picture& whole) {

@@ -44,12 +44,16 @@ int requestFailure(const std::string& command, const std::string& why, int statu
     return status;
 }
 
-Result<ControlClient> connectToSession(const std::string& command, const std::string& session, Deadline deadline,
-                                       int& status) {
+Result<std::string> controlPathOf(const std::string& command, const std::string& session, int& status) {
     status = kExitFailed;
     auto sessions = findRunningSessions();
     if (!sessions) return sessions.error();
-    auto path = pathOf(command, session, *sessions, status);
+    return pathOf(command, session, *sessions, status);
+}
+
+Result<ControlClient> connectToSession(const std::string& command, const std::string& session, Deadline deadline,
+                                       int& status) {
+    auto path = controlPathOf(command, session, status);
     if (!path) return path.error();
     return ControlClient::connect(*path, deadline);
 }

@@ -15,6 +15,9 @@ inline constexpr int kExitFailed = 1;
 // Prints one line, such as "mural ctl: WHY". Returns the status.
 int requestFailure(const std::string& command, const std::string& why, int status);
 
+// Returns the path of the control socket. session and errors: as for connectToSession().
+Result<std::string> controlPathOf(const std::string& command, const std::string& session, int& status);
+
 // session: as `mural ctl` names it; empty: the only one. Errors: no such session, or several; `status` is the exit
 // status.
 Result<ControlClient> connectToSession(const std::string& command, const std::string& session, Deadline deadline,

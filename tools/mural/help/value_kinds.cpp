@@ -124,6 +124,15 @@ const OptionKind kOptions[] = {
     {"", "--canvas", plain<ValueSource::Canvas>},
     {"", "--interface", plain<ValueSource::Interface>},
     {"ctl", "COMMAND", plain<ValueSource::ControlWords>},
+    {"page", "COMMAND",
+     [] {
+         return ValueKind{ValueSource::Session, {"link", "links", "revoke"}, {}};
+     }},
+    {"page", "--at", plain<ValueSource::Text>},
+    {"page", "--for", plain<ValueSource::Text>},
+    {"page", "--name", plain<ValueSource::Text>},
+    {"page", "--page-embed", plain<ValueSource::Text>},
+    {"page", "--page-host", plain<ValueSource::Text>},
     {"help", "COMMAND", plain<ValueSource::MuralCommand>},
     {"node", "--name", plain<ValueSource::Text>},
     {"node", "--as", plain<ValueSource::Text>},

@@ -18,6 +18,7 @@ export interface Notice {
     text: string;
 }
 
+const kSameRatio = 0.02; // pictures are reduced to whole pixels
 const kMostLogLines = 500;
 const kMostEvents = 100;
 const kNoticeMs = 8000;
@@ -205,9 +206,18 @@ export class Session {
         this.history.add(status);
         this.status.value = status;
         const key = status.session + status.tiles + status.nodes.map(node => node.node).join();
-        const isStale = this.wallKey !== null && this.wallKey !== key;
+        const isStale = this.wallKey !== null && (this.wallKey !== key || this.hasOtherSize());
         this.wallKey = key;
         if (isStale) void this.refreshWall();
+    }
+
+    // The server knows the size of the program's picture from the first picture on, and programs change it.
+    private hasOtherSize(): boolean {
+        const wall = this.pictures.stream('wall');
+        if (!this.wall.value || !wall.hasPicture) return false;
+        const [width, height] = this.wall.value.program.size;
+        const ratio = (wall.canvas.width * height) / (wall.canvas.height * width);
+        return !(Math.abs(ratio - 1) < kSameRatio);
     }
 
     private onEvents(events: HeadEvent[]): void {

@@ -42,7 +42,8 @@ export function UseView({ session }: ViewProps) {
     const input = useRef<ProgramInput | null>(null);
     const hasControl = session.holder !== undefined && session.holder.client === session.self?.client;
     const stream = session.pictures.stream('wall');
-    const [width, height] = wall?.program.size ?? size ?? [16, 9];
+    const programSize = wall && wall.program.size[0] > 0 ? wall.program.size : null;
+    const [width, height] = programSize ?? size ?? [16, 9];
 
     useEffect(() => {
         if (!hasControl) return;

@@ -1,0 +1,224 @@
+#include "nodes/head/preview/preview_server.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "common/log/log.hpp"
+#include "nodes/head/preview/reduce_picture.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int kPageBacklog = 16;
+constexpr int kNicePreview = 10; // below the threads that draw, send and assemble
+constexpr int kAcceptRestMs = 50;
+constexpr int kPreviewSliceMs = 60'000; // offers, pages and the destructor wake the thread earlier
+
+Error previewError(const std::string& path, const char* what) {
+    return Error{"the socket " + path + " cannot be opened: " + what + ": " + std::strerror(errno) +
+                 "; pages show no pictures of this session"};
+}
+
+Result<FileDescriptor> listenForPages(const std::string& path) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path.empty() || path.size() >= sizeof address.sun_path)
+        return Error{"the socket " + path + " cannot be opened: its path is too long; pages show no pictures"};
+    std::memcpy(address.sun_path, path.data(), path.size());
+    FileDescriptor fd(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    if (!fd.valid()) return previewError(path, "socket");
+    // Linux gives the file the mode of the unbound socket, so no other user can connect in between.
+    if (fchmod(fd.get(), S_IRUSR | S_IWUSR) != 0) return previewError(path, "fchmod");
+    if (bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+        return previewError(path, "bind");
+    if (listen(fd.get(), kPageBacklog) != 0) return previewError(path, "listen");
+    return fd;
+}
+
+bool isOfSameUser(int socket) {
+    ucred peer{};
+    socklen_t size = sizeof peer;
+    return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && (peer.uid == geteuid() || peer.uid == 0);
+}
+
+// Receives a wish, and the descriptor that may come with it. Returns the number of bytes as recvmsg() does.
+ssize_t receiveWish(int socket, PictureWish& wish, FileDescriptor& memory) {
+    iovec part{&wish, sizeof wish};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    const ssize_t n = recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+    if (n < 0) return n;
+    for (cmsghdr* at = CMSG_FIRSTHDR(&message); at != nullptr; at = CMSG_NXTHDR(&message, at)) {
+        if (at->cmsg_level != SOL_SOCKET || at->cmsg_type != SCM_RIGHTS || at->cmsg_len < CMSG_LEN(sizeof(int)))
+            continue;
+        int fd = -1;
+        std::memcpy(&fd, CMSG_DATA(at), sizeof fd);
+        memory = FileDescriptor(fd);
+    }
+    return n;
+}
+
+} // namespace
+
+PreviewServer::Memory::~Memory() {
+    if (bytes != nullptr) munmap(bytes, size);
+}
+
+PreviewServer::Memory PreviewServer::mapped(FileDescriptor memory) {
+    Memory result;
+    const int seals = fcntl(memory.get(), F_GET_SEALS);
+    struct stat facts {};
+    if (seals < 0 || (seals & F_SEAL_SHRINK) == 0 || fstat(memory.get(), &facts) != 0 || facts.st_size <= 0)
+        return result;
+    const auto size = static_cast<size_t>(facts.st_size);
+    void* at = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, memory.get(), 0);
+    if (at == MAP_FAILED) return result;
+    result.bytes = static_cast<std::byte*>(at);
+    result.size = size;
+    return result;
+}
+
+Result<std::unique_ptr<PreviewServer>> PreviewServer::start(const std::string& path,
+                                                            std::function<std::optional<Viewport>(int node)> areaOf) {
+    auto listener = listenForPages(path);
+    if (!listener) return listener.error();
+    FileDescriptor wake(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+    if (!wake.valid()) return previewError(path, "eventfd");
+    std::unique_ptr<PreviewServer> server(
+        new PreviewServer(path, std::move(*listener), std::move(wake), std::move(areaOf)));
+    server->thread_ = std::thread([raw = server.get()] { raw->serve(); });
+    return server;
+}
+
+PreviewServer::PreviewServer(std::string path, FileDescriptor listener, FileDescriptor wake,
+                             std::function<std::optional<Viewport>(int node)> areaOf)
+    : path_(std::move(path)), listener_(std::move(listener)), wake_(std::move(wake)), areaOf_(std::move(areaOf)) {}
+
+PreviewServer::~PreviewServer() {
+    stop_ = true;
+    const uint64_t one = 1;
+    [[maybe_unused]] const ssize_t n = write(wake_.get(), &one, sizeof one);
+    if (thread_.joinable()) thread_.join();
+    unlink(path_.c_str());
+}
+
+void PreviewServer::offer(int64_t frame, std::shared_ptr<const OwnedPicture> picture) {
+    {
+        const std::lock_guard lock(mutex_);
+        latest_.swap(picture); // the earlier picture may be freed, which takes no lock
+        latestFrame_ = frame;
+    }
+    if (!hasWish_.load(std::memory_order_acquire)) return;
+    const uint64_t one = 1;
+    [[maybe_unused]] const ssize_t n = write(wake_.get(), &one, sizeof one);
+}
+
+void PreviewServer::serve() {
+    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNicePreview);
+    while (!stop_) {
+        std::vector<pollfd> polled{{listener_.get(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
+        for (const Page& page : pages_) polled.push_back({page.socket.get(), POLLIN, 0});
+        if (poll(polled.data(), polled.size(), kPreviewSliceMs) <= 0) continue;
+        uint64_t count = 0;
+        [[maybe_unused]] const ssize_t n = read(wake_.get(), &count, sizeof count);
+        if (stop_) break;
+        for (size_t i = 0; i < pages_.size(); ++i)
+            if (polled[i + 2].revents != 0) receive(pages_[i]);
+        std::erase_if(pages_, [](const Page& page) { return page.isGone; });
+        if (polled[0].revents != 0) acceptPage();
+        // Set before the look at the latest picture, so an offer in between wakes the thread again.
+        hasWish_ = std::ranges::any_of(pages_, [](const Page& page) { return page.wish.has_value(); });
+        std::shared_ptr<const OwnedPicture> picture;
+        uint64_t frame = 0;
+        {
+            const std::lock_guard lock(mutex_);
+            picture = latest_;
+            frame = static_cast<uint64_t>(latestFrame_);
+        }
+        for (Page& page : pages_)
+            if (picture && page.wish && frame > page.wish->afterFrame) fulfil(page, frame, picture);
+        std::erase_if(pages_, [](const Page& page) { return page.isGone; });
+    }
+    pages_.clear();
+}
+
+void PreviewServer::acceptPage() {
+    FileDescriptor socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    // Waits, because without a free descriptor the next accept4() would fail at once.
+    if (!socket.valid() && (errno == EMFILE || errno == ENFILE)) poll(nullptr, 0, kAcceptRestMs);
+    if (!socket.valid() || !isOfSameUser(socket.get()) || pages_.size() >= kMaxPages) return;
+    pages_.emplace_back().socket = std::move(socket);
+}
+
+void PreviewServer::receive(Page& page) {
+    PictureWish wish;
+    FileDescriptor memory;
+    const ssize_t n = receiveWish(page.socket.get(), wish, memory);
+    if (n < 0 && (errno == EAGAIN || errno == EINTR)) return;
+    const bool isValid = n == static_cast<ssize_t>(sizeof wish) && wish.version == kPictureWishVersion &&
+                         wish.maxWidth > 0 && wish.maxHeight > 0 && wish.maxWidth <= INT32_MAX &&
+                         wish.maxHeight <= INT32_MAX;
+    if (!isValid) {
+        page.isGone = true;
+        return;
+    }
+    if (memory.valid()) page.memory = mapped(std::move(memory));
+    page.wish = wish;
+}
+
+void PreviewServer::fulfil(Page& page, uint64_t frame, const std::shared_ptr<const OwnedPicture>& picture) {
+    const PictureWish wish = *page.wish;
+    Picture source = picture->view();
+    if (source.format != PictureFormat::Bgra8) {
+        eightBits_.resize(source.width, source.height);
+        copyInto(eightBits_, 0, 0, source);
+        source = eightBits_.view();
+    }
+    if (wish.source != kWallPicture) {
+        const auto area = areaOf_(static_cast<int>(wish.source - 1));
+        const PixelViewport whole{0, 0, source.width, source.height};
+        const PixelViewport pixels = area ? intersect(apply(whole, *area), whole) : PixelViewport{};
+        if (pixels.w <= 0 || pixels.h <= 0) return give(page, {PictureOutcome::NoSuchSource});
+        part_ = cutOut(source, pixels);
+        source = part_.view();
+    }
+    const ReducedSize size =
+        reducedSize(source.width, source.height, static_cast<int>(wish.maxWidth), static_cast<int>(wish.maxHeight));
+    PictureNotice notice;
+    notice.width = static_cast<uint32_t>(size.width);
+    notice.height = static_cast<uint32_t>(size.height);
+    notice.sourceWidth = static_cast<uint32_t>(source.width);
+    notice.sourceHeight = static_cast<uint32_t>(source.height);
+    notice.frame = frame;
+    notice.bytes = uint64_t{notice.width} * notice.height * kPictureBytesPerPixel;
+    if (notice.bytes > page.memory.size)
+        notice.outcome = PictureOutcome::NeedsMemory;
+    else
+        reducePicture(source, size, page.memory.bytes);
+    give(page, notice);
+}
+
+void PreviewServer::give(Page& page, const PictureNotice& notice) {
+    page.wish.reset();
+    const ssize_t n = send(page.socket.get(), &notice, sizeof notice, MSG_NOSIGNAL | MSG_DONTWAIT);
+    // A page has one wish at a time, so the socket has room.
+    if (n != static_cast<ssize_t>(sizeof notice)) page.isGone = true;
+}
+
+} // namespace mural

@@ -1,0 +1,68 @@
+// Prints each event of pointer and keyboard that its window receives: "button 1 down 80,100", "key 61 up" with the
+// keysym in hex. Draws another colour after each event.
+#include <cstdio>
+#include <unistd.h>
+
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/x_window.hpp"
+
+namespace {
+
+int events = 0;
+
+// Returns the topmost window on the root, which is the only one of this program.
+::Window ownWindow(Display* display) {
+    ::Window root = 0, parent = 0, *children = nullptr;
+    unsigned count = 0;
+    if (XQueryTree(display, DefaultRootWindow(display), &root, &parent, &children, &count) == 0 || count == 0)
+        programs::fail("no window");
+    const ::Window top = children[count - 1];
+    XFree(children);
+    return top;
+}
+
+void printKey(XKeyEvent& event) {
+    char text[16];
+    KeySym keysym = 0;
+    XLookupString(&event, text, sizeof text, &keysym, nullptr);
+    std::printf("key %lx %s\n", keysym, event.type == KeyPress ? "down" : "up");
+}
+
+void printEvents(Display* display) {
+    while (XPending(display) > 0) {
+        XEvent event;
+        XNextEvent(display, &event);
+        if (event.type == MappingNotify) XRefreshKeyboardMapping(&event.xmapping);
+        if (event.type == KeyPress || event.type == KeyRelease) printKey(event.xkey);
+        if (event.type == ButtonPress || event.type == ButtonRelease)
+            std::printf("button %u %s %d,%d\n", event.xbutton.button, event.type == ButtonPress ? "down" : "up",
+                        event.xbutton.x, event.xbutton.y);
+        if (event.type == MotionNotify) std::printf("move %d,%d\n", event.xmotion.x, event.xmotion.y);
+        ++events;
+    }
+    std::fflush(stdout);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return programs::runInGlxWindow(
+        argc, argv, {},
+        [](programs::Window&) {
+            Display* display = programs::openDisplayOnce();
+            const ::Window window = ownWindow(display);
+            XSelectInput(display, window,
+                         KeyPressMask | KeyReleaseMask | ButtonPressMask | ButtonReleaseMask | PointerMotionMask);
+            XSetInputFocus(display, window, RevertToParent, CurrentTime);
+            XSync(display, False);
+        },
+        [](programs::Window&, int frame) {
+            printEvents(programs::openDisplayOnce());
+            glClearColor(static_cast<float>(events % 8) / 8, 0.5F, 0.25F, 1);
+            glClear(GL_COLOR_BUFFER_BIT);
+            if (frame < 10) std::printf("frame %d\n", frame);
+            std::fflush(stdout);
+            usleep(5000);
+        });
+}

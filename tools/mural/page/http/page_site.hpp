@@ -1,0 +1,85 @@
+// The HTTP resources of the page, without sockets: requests become responses. Used by the thread of its io_context.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+
+#include "tools/mural/page/access/request_origin.hpp"
+#include "tools/mural/page/hub/page_hub.hpp"
+#include "tools/mural/page/protocol/rate_limit.hpp"
+
+namespace mural::page {
+
+inline constexpr size_t kMaxHeaderBytes = size_t{8} << 10, kMaxBodyBytes = size_t{1} << 20;
+
+struct HttpRequest {
+    std::string method;
+    std::string path; // with the query, as the browser sent it
+    std::string host, origin, authorization;
+    std::string body;
+    std::string address; // of the client, for limits and the log
+};
+
+struct HttpResponse {
+    unsigned status = 200;
+    std::string type = "text/plain; charset=utf-8";
+    std::string body;
+    std::vector<std::pair<std::string, std::string>> headers; // beside those of every response
+};
+
+struct SiteConfig {
+    std::vector<std::string> hosts; // by which the page may be reached; empty: any, on a Unix socket
+    std::string embedOrigin;        // may show the page in a frame; empty: nobody
+    bool hasOpenMetrics = false;    // /metrics needs no token
+};
+
+class PageSite {
+public:
+    using OnResponse = std::function<void(HttpResponse response)>;
+
+    PageSite(boost::asio::io_context& io, PageHub& hub, SiteConfig config);
+
+    void handle(HttpRequest request, OnResponse onResponse);
+    // Returns why a WebSocket is refused; nullopt: it is not.
+    [[nodiscard]] std::optional<HttpResponse> refusal(const HttpRequest& request) const;
+    // Returns the headers of every response.
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> commonHeaders() const;
+    [[nodiscard]] PageHub& hub() { return hub_; }
+
+private:
+    struct Call { // an accepted request of the interface
+        HttpRequest request;
+        Role role = Role::View;
+        std::string path;  // below /api/v1/
+        std::string query; // after "?"
+    };
+
+    void handleApi(const std::string& path, const std::string& query, HttpRequest request, OnResponse onResponse);
+    void answer(const Call& call, const OnResponse& onResponse);
+    void answerDocument(const Call& call, const OnResponse& onResponse);
+    void answerPicture(const Call& call, const OnResponse& onResponse);
+    void answerConfig(const Call& call, const OnResponse& onResponse);
+    void answerLinks(const Call& call, const OnResponse& onResponse);
+    void answerOperation(const Call& call, const OnResponse& onResponse);
+    void answerTrace(size_t frames, int tries, const OnResponse& onResponse);
+    void answerMetrics(const OnResponse& onResponse);
+    void answerHealth(bool isReady, const OnResponse& onResponse);
+    void performFor(const Call& call, const std::string& operation, const nlohmann::json& arguments,
+                    const OnResponse& onResponse);
+
+    boost::asio::io_context& io_;
+    PageHub& hub_;
+    const SiteConfig config_;
+    const KnownHosts hosts_;
+    RateLimit requests_{100}; // of all clients together
+};
+
+} // namespace mural::page

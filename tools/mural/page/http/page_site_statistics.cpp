@@ -1,0 +1,59 @@
+// The resources of the page that are made from the head's statistics.
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include <boost/asio/steady_timer.hpp>
+
+#include "common/json/json_text.hpp"
+#include "tools/mural/page/http/http_text.hpp"
+#include "tools/mural/page/http/page_site.hpp"
+#include "tools/mural/stat/chrome_trace.hpp"
+#include "tools/mural/stat/prometheus_text.hpp"
+
+namespace mural::page {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::chrono::milliseconds kTraceRetry{500};
+
+Result<cli::SessionFrames> framesOf(const Json& reply) {
+    const auto result = reply.find("result");
+    if (result == reply.end()) return Error{reply.value("error", std::string("the session does not reply"))};
+    cli::SessionFrames frames;
+    if (const auto added = cli::addReply(frames, *result); !added) return added.error();
+    return frames;
+}
+
+} // namespace
+
+// The first request switches the statistics on, so frames may come only after it.
+void PageSite::answerTrace(size_t count, int tries, const OnResponse& onResponse) {
+    hub_.askHead("frames", {{"since", 1}, {"newest", count}}, [this, count, tries, onResponse](const Json& reply) {
+        auto frames = framesOf(reply);
+        if (!frames) return onResponse(textResponse(503, frames.error().message));
+        cli::dropPartialBegin(*frames);
+        if (frames->frames.size() >= count || tries == 0) {
+            if (frames->frames.empty()) return onResponse(textResponse(503, "the program draws no frames now"));
+            return onResponse(jsonResponse(200, cli::chromeTrace(*frames)));
+        }
+        const auto timer = std::make_shared<boost::asio::steady_timer>(io_, kTraceRetry);
+        timer->async_wait([this, timer, count, tries, onResponse](const boost::system::error_code& error) {
+            if (!error) answerTrace(count, tries - 1, onResponse);
+        });
+    });
+}
+
+void PageSite::answerMetrics(const OnResponse& onResponse) {
+    constexpr int kMeansOf = 120; // as mural stat
+    hub_.askHead("frames", {{"since", 1}, {"newest", kMeansOf}}, [this, onResponse](const Json& reply) {
+        auto frames = framesOf(reply);
+        std::string text = frames ? cli::prometheusText({*frames}) : std::string();
+        text += pageMetrics(hub_.numbers(), hub_.hello().value("session", std::string()), frames.ok());
+        onResponse({200, "text/plain; version=0.0.4; charset=utf-8", std::move(text), {}});
+    });
+}
+
+} // namespace mural::page

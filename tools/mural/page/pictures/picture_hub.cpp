@@ -1,0 +1,227 @@
+#include "tools/mural/page/pictures/picture_hub.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "common/base/clock.hpp"
+#include "common/log/log.hpp"
+#include "tools/mural/page/pictures/encode_picture.hpp"
+
+namespace mural::page {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kBestQuality = 95; // of stills, with all of the colour
+constexpr uint32_t kMaxNode = 100'000;
+constexpr std::chrono::seconds kSnapshotPatience{5};
+
+Result<std::optional<PictureClass>> classOf(const Json& arguments) {
+    const auto value = arguments.find("class");
+    if (value != arguments.end() && value->is_string()) {
+        const auto& name = value->get_ref<const std::string&>();
+        if (name == "off") return std::optional<PictureClass>();
+        if (const auto found = pictureClassOfName(name)) return found;
+    }
+    return Error{"class: expected thumb, preview, full or off"};
+}
+
+Result<uint32_t> sourceOf(const Json& arguments) {
+    const auto value = arguments.find("of");
+    if (value == arguments.end() || *value == "wall") return kWallPicture;
+    if (value->is_number_unsigned() && value->get<uint64_t>() <= kMaxNode) return 1 + value->get<uint32_t>();
+    return Error{"of: expected \"wall\" or the number of a node"};
+}
+
+} // namespace
+
+PictureHub::PictureHub(boost::asio::io_context& io, std::string path, const PictureLimits& limits)
+    : io_(io), path_(std::move(path)), limits_(limits) {}
+
+PictureHub::~PictureHub() {
+    alive_.reset();
+    for (auto& [key, channel] : channels_) channel.feed->close();
+    encoder_.join();
+}
+
+Result<Json> PictureHub::preview(int viewer, ViewerSocket& socket, const Json& arguments) {
+    for (const auto& [name, value] : arguments.items())
+        if (name != "class" && name != "of") return Error{"unknown argument \"" + name.substr(0, 40) + "\""};
+    auto wanted = classOf(arguments);
+    if (!wanted) return wanted.error();
+    auto source = sourceOf(arguments);
+    if (!source) return source.error();
+    if (!*wanted) {
+        forget(viewer);
+        return Json::object();
+    }
+    const Key key{*source, **wanted};
+    if (!channels_.contains(key)) {
+        auto feed = PictureFeed::connect(io_, path_);
+        if (!feed) return feed.error();
+        channels_[key].feed = std::move(*feed);
+    }
+    Watcher& watcher = viewers_[viewer];
+    const uint32_t lastInput = watcher.lastInput;
+    watcher = {};
+    watcher.socket = &socket;
+    watcher.key = key;
+    watcher.lastInput = lastInput;
+    tick(monotonicNowNs());
+    return Json::object();
+}
+
+void PictureHub::acknowledged(int viewer, uint64_t frame, int64_t nowNs) {
+    const auto found = viewers_.find(viewer);
+    if (found == viewers_.end()) return;
+    found->second.flow.acknowledged(frame, nowNs);
+    tick(nowNs);
+}
+
+void PictureHub::forget(int viewer) { viewers_.erase(viewer); }
+
+void PictureHub::inputReached(int viewer, uint32_t number) {
+    const auto found = viewers_.find(viewer);
+    if (found != viewers_.end()) found->second.lastInput = number;
+}
+
+void PictureHub::tick(int64_t nowNs) {
+    std::erase_if(channels_, [this](auto& entry) {
+        const bool isWatched =
+            std::ranges::any_of(viewers_, [&](const auto& viewer) { return viewer.second.key == entry.first; });
+        if (!isWatched) entry.second.feed->close();
+        return !isWatched;
+    });
+    for (auto& [key, channel] : channels_) pump(key, channel, nowNs);
+}
+
+void PictureHub::pump(const Key& key, Channel& channel, int64_t nowNs) {
+    bool hasReady = false; // a viewer can take the next picture
+    for (auto& [number, watcher] : viewers_) {
+        if (watcher.key != key || !watcher.flow.canSend()) continue;
+        const uint64_t frame = channel.latest.frame;
+        if (channel.latest.picture == nullptr || watcher.sentFrame == frame) {
+            hasReady = true;
+            const bool rests = channel.latest.picture != nullptr && nowNs - channel.arrivedNs >= kRestNs;
+            if (rests && watcher.stillFrame != frame) deliver(watcher, key, channel, kStillQuality, true, nowNs);
+            continue;
+        }
+        const int quality = std::max(1, limits_.quality * watcher.flow.quality() / 100);
+        deliver(watcher, key, channel, quality, false, nowNs);
+    }
+    if (hasReady) wishNext(key, channel, nowNs);
+}
+
+// Sends the latest picture in this quality, or has it encoded first. Returns whether it was sent.
+bool PictureHub::deliver(Watcher& watcher, const Key& key, Channel& channel, int quality, bool isStill, int64_t nowNs) {
+    const auto found = channel.encoded.find(quality);
+    if (found == channel.encoded.end()) {
+        encode(key, channel, quality);
+        return false;
+    }
+    if (found->second == nullptr) return false; // in progress
+    PartHeader header;
+    header.flags = static_cast<uint16_t>(kKeyFrame | kLastOfFrame | (isStill ? kStill : 0));
+    header.stream = key.first;
+    header.frame = channel.latest.frame;
+    header.lastInput = watcher.lastInput;
+    header.pictureWidth = header.width = static_cast<uint16_t>(channel.latest.picture->width());
+    header.pictureHeight = header.height = static_cast<uint16_t>(channel.latest.picture->height());
+    send(watcher, channel, partHeaderBytes(header, found->second->size()), found->second, nowNs);
+    if (isStill) watcher.stillFrame = header.frame;
+    Totals& totals = totals_[static_cast<size_t>(key.second)];
+    ++totals.sent;
+    totals.bytes += kPartHeaderBytes + found->second->size();
+    return true;
+}
+
+void PictureHub::send(Watcher& watcher, const Channel& channel, const std::string& header, const Encoded& bytes,
+                      int64_t nowNs) {
+    watcher.sentFrame = channel.latest.frame;
+    watcher.flow.sent(channel.latest.frame, nowNs);
+    watcher.socket->sendBinary(header, bytes);
+}
+
+void PictureHub::wishNext(const Key& key, Channel& channel, int64_t nowNs) {
+    const ClassLimits limits = limitsOf(key.second, limits_);
+    if (channel.feed->isWaiting() || nowNs - channel.wishedNs < limits.intervalNs) return;
+    channel.wishedNs = nowNs;
+    PictureWish wish;
+    wish.source = key.first;
+    wish.maxWidth = static_cast<uint32_t>(limits.maxWidth);
+    wish.maxHeight = static_cast<uint32_t>(limits.maxHeight);
+    wish.afterFrame = channel.latest.frame;
+    channel.feed->wish(wish, [this, key](Result<FeedPicture> picture) {
+        if (picture) return arrived(key, std::move(*picture));
+        log::debug(log::Topic::Picture, picture.error().message); // the head ends, or the node has no part of the wall
+    });
+}
+
+void PictureHub::arrived(const Key& key, FeedPicture picture) {
+    const auto found = channels_.find(key);
+    if (found == channels_.end()) return;
+    Channel& channel = found->second;
+    if (key.first == kWallPicture) {
+        wallWidth_ = picture.sourceWidth;
+        wallHeight_ = picture.sourceHeight;
+    }
+    channel.latest = std::move(picture);
+    channel.encoded.clear();
+    channel.arrivedNs = monotonicNowNs();
+    pump(key, channel, channel.arrivedNs);
+}
+
+void PictureHub::encode(const Key& key, Channel& channel, int quality) {
+    channel.encoded[quality] = nullptr;
+    ++totals_[static_cast<size_t>(key.second)].encodes;
+    const bool isStill = quality == kStillQuality;
+    auto task = [this, key, quality, isStill, latest = channel.latest, alive = std::weak_ptr<int>(alive_)] {
+        auto bytes = encodeJpeg(latest.picture->view(), isStill ? kBestQuality : quality,
+                                isStill ? ChromaOf::All : ChromaOf::Half);
+        if (!bytes) return log::warning(log::Topic::Picture, bytes.error().message);
+        auto shared = std::make_shared<const std::string>(std::move(*bytes));
+        boost::asio::post(io_, [this, key, quality, alive, frame = latest.frame, shared = std::move(shared)] {
+            if (alive.expired()) return;
+            const auto found = channels_.find(key);
+            if (found == channels_.end() || found->second.latest.frame != frame) return;
+            found->second.encoded[quality] = shared;
+            pump(key, found->second, monotonicNowNs());
+        });
+    };
+    boost::asio::post(encoder_, std::move(task));
+}
+
+void PictureHub::snapshot(const Snapshot& snapshot, std::function<void(Result<std::string> bytes)> onDone) {
+    auto connected = PictureFeed::connect(io_, path_);
+    if (!connected) return onDone(connected.error());
+    const ClassLimits limits = limitsOf(PictureClass::Full, limits_);
+    PictureWish wish;
+    wish.maxWidth = static_cast<uint32_t>(snapshot.maxWidth > 0 ? snapshot.maxWidth : limits.maxWidth);
+    wish.maxHeight = static_cast<uint32_t>(limits.maxHeight);
+    std::shared_ptr<PictureFeed> feed = std::move(*connected);
+    const auto timer = std::make_shared<boost::asio::steady_timer>(io_, kSnapshotPatience);
+    timer->async_wait([feed, onDone](const boost::system::error_code& error) {
+        if (error) return; // the picture came in time
+        feed->close();
+        onDone(Error{"the program has drawn no picture yet"});
+    });
+    feed->wish(wish, [this, snapshot, feed, timer, onDone](Result<FeedPicture> picture) {
+        timer->cancel();
+        if (!picture) return onDone(picture.error());
+        auto task = [this, snapshot, pixels = picture->picture, onDone, alive = std::weak_ptr<int>(alive_)] {
+            auto bytes = snapshot.isPng ? encodePng(pixels->view())
+                                        : encodeJpeg(pixels->view(), snapshot.quality,
+                                                     snapshot.quality >= 90 ? ChromaOf::All : ChromaOf::Half);
+            boost::asio::post(io_, [alive, onDone, bytes = std::move(bytes)] {
+                if (!alive.expired()) onDone(bytes);
+            });
+        };
+        boost::asio::post(encoder_, std::move(task));
+    });
+}
+
+} // namespace mural::page

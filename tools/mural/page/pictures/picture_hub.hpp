@@ -1,0 +1,103 @@
+// Pictures for all viewers: each class of pictures of each source is requested while somebody looks, encoded once per
+// quality, and sent by the flow control of each viewer. Used by the thread of its io_context; encoding has a thread of
+// its own.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+
+#include "common/base/result.hpp"
+#include "tools/mural/page/hub/viewer_socket.hpp"
+#include "tools/mural/page/pictures/picture_class.hpp"
+#include "tools/mural/page/pictures/picture_feed.hpp"
+#include "tools/mural/page/pictures/viewer_flow.hpp"
+#include "tools/mural/page/protocol/picture_part.hpp"
+
+namespace mural::page {
+
+class PictureHub {
+public:
+    // A class of pictures whose viewers have seen no later one for this time gets the still.
+    static constexpr int64_t kRestNs = 400'000'000;
+
+    struct Snapshot {
+        int maxWidth = 0;
+        int quality = 90;
+        bool isPng = false;
+    };
+    struct Totals {
+        uint64_t encodes = 0, sent = 0, bytes = 0;
+    };
+
+    // path: of the head's socket for pages.
+    PictureHub(boost::asio::io_context& io, std::string path, const PictureLimits& limits);
+    PictureHub(const PictureHub&) = delete;
+    PictureHub& operator=(const PictureHub&) = delete;
+    ~PictureHub();
+
+    // Performs the operation `preview`. Returns an empty object. Errors: invalid arguments; the head gives no pictures.
+    Result<nlohmann::json> preview(int viewer, ViewerSocket& socket, const nlohmann::json& arguments);
+    void acknowledged(int viewer, uint64_t frame, int64_t nowNs);
+    void forget(int viewer);
+    // The program has got input of this viewer up to this number.
+    void inputReached(int viewer, uint32_t number);
+
+    // Requests and sends what is due. Call often while isWanted().
+    void tick(int64_t nowNs);
+    [[nodiscard]] bool isWanted() const { return !viewers_.empty(); }
+
+    // Encodes the present picture of the wall once.
+    void snapshot(const Snapshot& snapshot, std::function<void(Result<std::string> bytes)> onDone);
+
+    [[nodiscard]] const std::array<Totals, kPictureClasses>& totals() const { return totals_; }
+    // Size of the wall's picture; 0: nobody has looked.
+    [[nodiscard]] std::pair<int, int> wallSize() const { return {wallWidth_, wallHeight_}; }
+
+private:
+    using Key = std::pair<uint32_t, PictureClass>; // source (PictureWish), class
+    using Encoded = std::shared_ptr<const std::string>;
+    static constexpr int kStillQuality = 1000; // key of the still in Channel::encoded
+
+    // Pictures of one class of one source.
+    struct Channel {
+        std::shared_ptr<PictureFeed> feed;
+        int64_t wishedNs = 0; // the last wish
+        FeedPicture latest;
+        int64_t arrivedNs = 0;
+        std::map<int, Encoded> encoded; // of the latest picture, by quality; null: in progress
+    };
+    struct Watcher {
+        ViewerSocket* socket = nullptr;
+        Key key;
+        ViewerFlow flow;
+        uint64_t sentFrame = 0, stillFrame = 0;
+        uint32_t lastInput = 0;
+    };
+
+    void pump(const Key& key, Channel& channel, int64_t nowNs);
+    void wishNext(const Key& key, Channel& channel, int64_t nowNs);
+    void arrived(const Key& key, FeedPicture picture);
+    void encode(const Key& key, Channel& channel, int quality);
+    void send(Watcher& watcher, const Channel& channel, const std::string& header, const Encoded& bytes, int64_t nowNs);
+    bool deliver(Watcher& watcher, const Key& key, Channel& channel, int quality, bool isStill, int64_t nowNs);
+
+    boost::asio::io_context& io_;
+    const std::string path_;
+    const PictureLimits limits_;
+    std::map<int, Watcher> viewers_;
+    std::map<Key, Channel> channels_;
+    std::array<Totals, kPictureClasses> totals_{};
+    int wallWidth_ = 0, wallHeight_ = 0;
+    std::shared_ptr<int> alive_ = std::make_shared<int>(0); // expires with this object, for tasks of the encoder
+    boost::asio::thread_pool encoder_{1};
+};
+
+} // namespace mural::page
