@@ -35,11 +35,14 @@ bool drawsAlone(const SessionConfig& config, const SessionPlan& plan, const Node
            swapMembersOf(config, plan, node).empty();
 }
 
-// Returns the setup of a node without its numbers.
+// Returns the setup of a node without its numbers, and without its GPU, which a kept node keeps.
 std::string taskOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
     NodeSetup setup = setupOf(config, plan, node);
     setup.node = setup.collector = 0;
     setup.nodeCount = 1;
+    setup.gpu.clear();
+    setup.gpuTurn = 0;
+    setup.gpuTurns = 1;
     return toJson(setup) + " " + node.where + " " + std::to_string(static_cast<int>(node.reach));
 }
 
