@@ -164,18 +164,24 @@ def ignored_ranges_are_found(context):
 
 @cases.case
 def restarted_nodes_are_exact(context):
-    frames = 200
-    wanted = single(context, frames)
     for options in ("--tiles 2x1", "--db 2"):
-        wrong, shown, lines = draw(context, options, frames, during=kill_one(2))
+        # On a busy machine the node may return after the last frames of a short run.
+        wrong = pictures_after_the_return(context, options, 200) and pictures_after_the_return(context, options, 1000)
         if wrong:
             return "%s: %s" % (options, wrong)
-        if not any("is back" in line or "rejoin" in line for line in lines):
-            return "%s: no line about the node: %s" % (options, " | ".join(lines[-4:]))
-        wrong = differing(wanted[-20:], shown[-20:])
-        if wrong:
-            return "%s: after the return, %s" % (options, wrong)
     return None
+
+
+def pictures_after_the_return(context, options, frames):
+    """Kills a node, and compares the last 20 pictures."""
+    wanted = single(context, frames)
+    wrong, shown, lines = draw(context, options, frames, during=kill_one(2))
+    if wrong:
+        return wrong
+    if not any("is back" in line or "rejoin" in line for line in lines):
+        return "no line about the node: " + " | ".join(lines[-4:])
+    wrong = differing(wanted[-20:], shown[-20:])
+    return wrong and "after the return, " + wrong
 
 
 @cases.case
