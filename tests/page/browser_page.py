@@ -485,6 +485,46 @@ def input_of_viewers(context):
 
 
 @cases.case
+def with_the_run(context):
+    """`mural run --page` prints the address; the run goes on without its page, and the page ends with the run."""
+    wrong = []
+    command = [context.program("long_run"), "--frames", "1000000", "--size", SIZE]
+    with context.run(command, ["--tiles", "2x1", "--display", "app", "--page"]) as run:
+        if draws(run) is not True:
+            return draws(run)
+        address = next((line for line in run.standard_error if line.startswith("http://127.0.0.1:")), None)
+        if address is None:
+            return "no address: " + " | ".join(run.standard_error)
+        url, _, token = address.strip().partition("#t=")
+        with WebSocket(url) as viewer:
+            if (viewer.hello(token) or {}).get("role") != "operate":
+                wrong.append("the printed address does not open the page")
+            page = result_of(context, run, "status") and run.processes(r"mural page\b")
+            if len(page) != 1:
+                return "processes of the page: %s" % page
+            os.kill(page[0], signal.SIGKILL)
+            if not run.wait_for_line("the page has ended (signal 9"):
+                wrong.append("a killed page is not reported")
+        frames = result_of(context, run, "status")["frames"]
+        time.sleep(0.5)
+        if result_of(context, run, "status")["frames"] <= frames:
+            wrong.append("the wall stands still without its page")
+        result = ended(context, run, wrong)
+    port = socket.socket()
+    port.bind(("127.0.0.1", 0))
+    port.listen()
+    taken = "127.0.0.1:%d" % port.getsockname()[1]
+    with context.run(command, ["--tiles", "2x1", "--display", "app", "--page=" + taken]) as run:
+        if not run.wait_for_line("the page has ended (exit status 2)"):
+            wrong.append("a taken port is not reported: %s" % run.standard_error)
+        if draws(run) is not True:
+            return draws(run)
+        result = ended(context, run, wrong)
+    port.close()
+    return result
+
+
+@cases.case
 def ends(context):
     """kill -9 of the page loses no frame (A-12); a lost head is reported, and the page ends."""
     wrong = []

@@ -98,6 +98,8 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("MODE");
     command.add_flag("--overlay-in-files", a.overlayInFiles, "the overlay also in the pictures of --out");
     command.add_flag("--verify{1}", a.verify, "compare every frame (=N: every Nth) with the program's own picture");
+    command.add_flag("--page{127.0.0.1}", a.page,
+                     "open a page that shows and steers the wall in a browser (=ADDRESS: there, as mural page --at)");
     command.add_flag("--fullscreen", a.fullScreen, "wall windows without borders, one per monitor");
     command.add_option("--position", a.position, "upper left corner of the wall windows on the screen")
         ->type_name("X,Y");

@@ -78,6 +78,7 @@ int runCommand(const RunOptions& options) {
     run.config.session = newSessionName();
     run.program = options.program;
     run.reportFile = options.reportFile;
+    run.page = options.page;
     run.programEnvironment = launch::Environment::current();
     run.headEnvironment = run.programEnvironment;
     launch::removeCapture(run.headEnvironment);

@@ -88,6 +88,8 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     options.quiet = a.quiet;
     if (a.report && a.report->empty()) return badValue("--report", "", "must be a file, such as --report report.json");
     options.reportFile = a.report.value_or("");
+    if (a.native && !a.page.empty()) return Error{"--page shows a wall; omit --native"};
+    options.page = a.page;
     options.program = a.program;
     if (a.printConfig) {
         auto text = configTextOf(a, c);

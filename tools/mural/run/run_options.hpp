@@ -26,6 +26,7 @@ struct RunOptions {
     std::string configText;           // --print-config: equivalent configuration; empty: not requested
     std::vector<std::string> notices; // warnings about the configuration file
     std::string reportFile;           // --report; empty: none
+    std::string page;                 // --page: address of the page; empty: none
     std::string launchChoice;         // the launcher and the reason, for --explain; empty: no other hosts
     std::vector<std::string> program; // name and arguments
 };
@@ -42,6 +43,7 @@ struct RunArguments {
     OptionText stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
     OptionText localNodes, frames, latency, report, record, overlay;
     std::string verify; // empty: not given
+    std::string page;   // empty: not given
     bool fullScreen = false, noPlacement = false, overlayInFiles = false, explain = false, native = false,
          quiet = false;
     std::vector<std::string> program;

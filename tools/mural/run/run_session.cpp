@@ -12,6 +12,7 @@
 #include "nodes/launch/program_supervisor.hpp"
 #include "tools/mural/head_control.hpp"
 #include "tools/mural/run/program_loop.hpp"
+#include "tools/mural/run/run_page.hpp"
 
 namespace mural::cli {
 
@@ -44,6 +45,7 @@ public:
         program_.leaveAlone(head_->process().pid());
         head_->send(toJson(run_.config));
         if (const auto failed = awaitReady()) return *failed;
+        openPage();
         run_.programEnvironment.set("MURAL_NOTES", bypass_.notesPath());
         if (!startProgram(run_, program_, console_)) return launch::kExitNotExecutable;
         nextExamination_ = Deadline::inMs(kExaminationMs);
@@ -75,6 +77,14 @@ private:
                 return fail("the render nodes were not ready in time; see mural doctor, or try --local-nodes 1");
         }
         return {};
+    }
+
+    void openPage() {
+        if (run_.page.empty()) return;
+        auto page = RunPage::start(run_.page);
+        if (!page) return console_.error("--page: " + page.error().message);
+        page_ = std::move(*page);
+        program_.leaveAlone(page_->pid());
     }
 
     void whileRunning() {
@@ -206,6 +216,7 @@ private:
         waitTurn(run_, program_, wasConnected ? head_->fd() : -1);
         for (const std::string& line : head_->receive()) take(line);
         watchBypass();
+        if (page_ && !finishing_ && head_->connected()) page_->watch(console_);
         if (wasConnected && !head_->connected() && ready_ && !report_) reportHeadLost();
     }
 
@@ -271,6 +282,7 @@ private:
     Deadline nextExamination_ = Deadline::never();
     Deadline uncapturedAt_ = Deadline::never();
     std::vector<std::string> bypassLines_; // reported
+    std::unique_ptr<RunPage> page_;        // ends after the head
     std::unique_ptr<HeadControl> head_;
     bool ready_ = false;
     bool finishing_ = false;

@@ -20,6 +20,7 @@ constexpr int64_t kEndGraceMs = 3'000; // time for a program to end after the re
 struct PreparedRun {
     SessionConfig config;   // complete
     std::string reportFile; // empty: none
+    std::string page;       // address of the page in a browser (--page); empty: none
     std::string programPath;
     std::vector<std::string> program; // argv[0] is the user's spelling
     launch::Environment programEnvironment;
