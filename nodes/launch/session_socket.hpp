@@ -1,5 +1,5 @@
-// The session's sockets in the file system: one for programs, in addition to the abstract one, the control socket, and
-// those of pages.
+// The session's sockets in the file system. Programs, clients of the control interface and pages have one each. The one
+// for programs exists in addition to an abstract socket.
 // Programs in another network namespace (sandboxes) cannot reach an abstract socket. Each session has its own folder,
 // which only its user may enter.
 #pragma once

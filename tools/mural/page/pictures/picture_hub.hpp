@@ -1,6 +1,6 @@
-// Pictures for all viewers: each class of pictures of each source is requested while somebody looks, encoded once per
-// quality, and sent by the flow control of each viewer. Used by the thread of its io_context; encoding has a thread of
-// its own.
+// Pictures for all viewers. The hub requests each class of each source while somebody looks, and encodes it once per
+// quality. The flow control of each viewer decides when it is sent. Used by the thread of its io_context; encoding has
+// a thread of its own.
 #pragma once
 
 #include <cstdint>
