@@ -6,10 +6,10 @@
 #include <cstring>
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "common/ipc/user_socket.hpp"
 #include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 
@@ -24,34 +24,6 @@ constexpr int kBacklog = 16;
 constexpr size_t kReceiveBytes = size_t{16} << 10;
 constexpr int64_t kRestRatio = 3;             // rest after a full turn: this multiple of its duration…
 constexpr int64_t kMaxRestNs = 50 * kNsPerMs; // …up to this time
-
-Error socketError(const std::string& path, const char* what) {
-    return Error{"the control socket " + path + " cannot be opened: " + what + ": " + std::strerror(errno) +
-                 "; mural stat and mural ctl do not find this session; make the folder writable"};
-}
-
-Result<FileDescriptor> listenAt(const std::string& path) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    if (path.empty() || path.size() >= sizeof(address.sun_path))
-        return Error{"the control socket " + path +
-                     " cannot be opened: its path is too long; set XDG_RUNTIME_DIR to a shorter one"};
-    std::memcpy(address.sun_path, path.data(), path.size());
-    FileDescriptor fd(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    if (!fd.valid()) return socketError(path, "socket");
-    // Linux gives the file the mode of the unbound socket, so no other user can connect in between.
-    if (fchmod(fd.get(), S_IRUSR | S_IWUSR) != 0) return socketError(path, "fchmod");
-    if (bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-        return socketError(path, "bind");
-    if (listen(fd.get(), kBacklog) != 0) return socketError(path, "listen");
-    return fd;
-}
-
-bool isAllowedPeer(int socket) {
-    ucred peer{};
-    socklen_t size = sizeof(peer);
-    return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && (peer.uid == geteuid() || peer.uid == 0);
-}
 
 bool isTemporary(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
@@ -70,8 +42,11 @@ void refuse(int socket) {
 
 Result<std::unique_ptr<ControlServer>> ControlServer::start(ControlServerConfig config, ControlOperations operations,
                                                             ControlFeed& feed) {
-    auto listener = listenAt(config.path);
-    if (!listener) return listener.error();
+    auto listener = listenForUser(config.path, SOCK_STREAM, kBacklog);
+    if (!listener)
+        return Error{"the control socket " + config.path + " cannot be opened: " + listener.error().message +
+                     "; mural stat and mural ctl do not find this session; set XDG_RUNTIME_DIR to a short, writable "
+                     "folder"};
     std::unique_ptr<ControlServer> server(
         new ControlServer(std::move(config), std::move(*listener), std::move(operations), feed));
     server->thread_ = std::thread([raw = server.get()] { raw->serve(); });
@@ -140,7 +115,7 @@ void ControlServer::acceptOne() {
     FileDescriptor socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     // Waits, because without a free descriptor the next accept4() would fail at once.
     if (!socket.valid() && (errno == EMFILE || errno == ENFILE)) poll(nullptr, 0, kSliceMs);
-    if (!socket.valid() || !isAllowedPeer(socket.get())) return;
+    if (!socket.valid() || !isPeerOwnOrRoot(socket.get())) return;
     if (clients_.size() >= kMaxControlClients) return refuse(socket.get());
     Client& client = clients_.emplace_back();
     client.socket = std::move(socket);

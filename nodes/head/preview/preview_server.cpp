@@ -14,6 +14,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "common/ipc/user_socket.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/preview/reduce_picture.hpp"
 
@@ -26,31 +27,8 @@ constexpr int kNicePreview = 10; // below the threads that draw, send and assemb
 constexpr int kAcceptRestMs = 50;
 constexpr int kPreviewSliceMs = 60'000; // offers, pages and the destructor wake the thread earlier
 
-Error previewError(const std::string& path, const char* what) {
-    return Error{"the socket " + path + " cannot be opened: " + what + ": " + std::strerror(errno) +
-                 "; pages show no pictures of this session"};
-}
-
-Result<FileDescriptor> listenForPages(const std::string& path) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    if (path.empty() || path.size() >= sizeof address.sun_path)
-        return Error{"the socket " + path + " cannot be opened: its path is too long; pages show no pictures"};
-    std::memcpy(address.sun_path, path.data(), path.size());
-    FileDescriptor fd(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    if (!fd.valid()) return previewError(path, "socket");
-    // Linux gives the file the mode of the unbound socket, so no other user can connect in between.
-    if (fchmod(fd.get(), S_IRUSR | S_IWUSR) != 0) return previewError(path, "fchmod");
-    if (bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-        return previewError(path, "bind");
-    if (listen(fd.get(), kPageBacklog) != 0) return previewError(path, "listen");
-    return fd;
-}
-
-bool isOfSameUser(int socket) {
-    ucred peer{};
-    socklen_t size = sizeof peer;
-    return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && (peer.uid == geteuid() || peer.uid == 0);
+Error previewError(const std::string& path, const std::string& why) {
+    return Error{"the socket " + path + " cannot be opened: " + why + "; pages show no pictures of this session"};
 }
 
 // Receives a wish, and the descriptor that may come with it. Returns the number of bytes as recvmsg() does.
@@ -96,10 +74,10 @@ PreviewServer::Memory PreviewServer::mapped(FileDescriptor memory) {
 
 Result<std::unique_ptr<PreviewServer>> PreviewServer::start(const std::string& path,
                                                             std::function<std::optional<Viewport>(int node)> areaOf) {
-    auto listener = listenForPages(path);
-    if (!listener) return listener.error();
+    auto listener = listenForUser(path, SOCK_SEQPACKET, kPageBacklog);
+    if (!listener) return previewError(path, listener.error().message);
     FileDescriptor wake(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-    if (!wake.valid()) return previewError(path, "eventfd");
+    if (!wake.valid()) return previewError(path, std::string("eventfd: ") + std::strerror(errno));
     std::unique_ptr<PreviewServer> server(
         new PreviewServer(path, std::move(*listener), std::move(wake), std::move(areaOf)));
     server->thread_ = std::thread([raw = server.get()] { raw->serve(); });
@@ -162,7 +140,7 @@ void PreviewServer::acceptPage() {
     FileDescriptor socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     // Waits, because without a free descriptor the next accept4() would fail at once.
     if (!socket.valid() && (errno == EMFILE || errno == ENFILE)) poll(nullptr, 0, kAcceptRestMs);
-    if (!socket.valid() || !isOfSameUser(socket.get()) || pages_.size() >= kMaxPages) return;
+    if (!socket.valid() || !isPeerOwnOrRoot(socket.get()) || pages_.size() >= kMaxPages) return;
     pages_.emplace_back().socket = std::move(socket);
 }
 

@@ -7,6 +7,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "common/ipc/user_socket.hpp"
 #include "common/json/json_text.hpp"
 #include "nodes/head/control/control_protocol.hpp"
 
@@ -24,13 +25,6 @@ Error connectionError(const std::string& path, const std::string& why) {
 
 const Error kNoReply{"the session does not reply; its head may be stopped"};
 const Error kClosed{"the session has closed the connection; it ended, or this client read too slowly"};
-
-// Checks the owner, because any user may listen under such a name.
-bool isTrustedPeer(int fd) {
-    ucred peer{};
-    socklen_t size = sizeof peer;
-    return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
-}
 
 // Returns false if the deadline passes.
 bool waitFor(int fd, short events, Deadline deadline) {
@@ -71,7 +65,7 @@ Result<ControlClient> ControlClient::connect(const std::string& path, Deadline d
             return connectionError(path, std::strerror(errno));
         poll(nullptr, 0, 10);
     }
-    if (!isTrustedPeer(fd.get())) return connectionError(path, "it belongs to another user");
+    if (!isPeerOwn(fd.get())) return connectionError(path, "it belongs to another user");
     ControlClient client(std::move(fd));
     auto first = client.receive(deadline);
     if (!first) return first.error();

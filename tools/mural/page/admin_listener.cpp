@@ -8,6 +8,7 @@
 
 #include <boost/asio/write.hpp>
 
+#include "common/ipc/user_socket.hpp"
 #include "common/json/json_text.hpp"
 #include "nodes/head/control/control_protocol.hpp"
 #include "nodes/head/control/control_request.hpp"
@@ -19,12 +20,6 @@ namespace {
 
 using Json = nlohmann::json;
 using boost::system::error_code;
-
-bool isOwnUser(int fd) {
-    ucred peer{};
-    socklen_t size = sizeof peer;
-    return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && (peer.uid == geteuid() || peer.uid == 0);
-}
 
 // A client of the socket. Requests are performed one after the other.
 class AdminClient : public std::enable_shared_from_this<AdminClient> {
@@ -96,15 +91,12 @@ Result<std::unique_ptr<AdminListener>> AdminListener::open(boost::asio::io_conte
     if (!error) return Error{"this session has a page already; mural page link prints an address of it"};
     unlink(path.c_str()); // of a page that was killed
     Local::acceptor acceptor(io);
-    acceptor.open(Local(), error);
-    const mode_t mask = umask(S_IXUSR | S_IRWXG | S_IRWXO);
-    if (!error) acceptor.bind(Local::endpoint(path), error);
-    umask(mask);
-    if (!error) acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
-    if (error) return Error{"the page cannot open its socket " + path + ": " + error.message()};
-    std::unique_ptr<AdminListener> listener(new AdminListener(std::move(acceptor), path, hub, std::move(onStop)));
-    listener->accept();
-    return listener;
+    auto listener = listenForUser(path, SOCK_STREAM, boost::asio::socket_base::max_listen_connections);
+    if (!listener) return Error{"the page cannot open its socket " + path + ": " + listener.error().message};
+    acceptor.assign(Local(), listener->release());
+    std::unique_ptr<AdminListener> admin(new AdminListener(std::move(acceptor), path, hub, std::move(onStop)));
+    admin->accept();
+    return admin;
 }
 
 AdminListener::AdminListener(Local::acceptor acceptor, std::string path, PageHub& hub, std::function<void()> onStop)
@@ -120,7 +112,8 @@ void AdminListener::close() {
 void AdminListener::accept() {
     acceptor_.async_accept([this](const error_code& error, Local::socket socket) {
         if (error) return;
-        if (isOwnUser(socket.native_handle())) std::make_shared<AdminClient>(std::move(socket), hub_, onStop_)->begin();
+        if (isPeerOwnOrRoot(socket.native_handle()))
+            std::make_shared<AdminClient>(std::move(socket), hub_, onStop_)->begin();
         accept();
     });
 }

@@ -9,6 +9,7 @@
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/ssl/context.hpp>
 
+#include "common/ipc/user_socket.hpp"
 #include "common/log/log.hpp"
 #include "tools/mural/page/http/browser_connection.hpp"
 
@@ -63,20 +64,14 @@ public:
     }
 
     Result<void> listenUnix(const std::string& path) {
-        if (path.size() >= sizeof(sockaddr_un::sun_path))
-            return Error{"--at unix:" + path + ": the path is too long; choose a shorter one"};
         struct stat facts {};
         if (lstat(path.c_str(), &facts) == 0 && S_ISSOCK(facts.st_mode) && facts.st_uid == geteuid() &&
             isDeserted(path))
             unlink(path.c_str()); // of an earlier page
         Local::acceptor acceptor(io_);
-        error_code error;
-        acceptor.open(Local(), error);
-        const mode_t mask = umask(S_IXUSR | S_IRWXG | S_IRWXO); // the socket gets mode 600 at once
-        if (!error) acceptor.bind(Local::endpoint(path), error);
-        umask(mask);
-        if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-        if (error) return Error{"--at unix:" + path + ": " + error.message() + "; choose another path"};
+        auto listener = listenForUser(path, SOCK_STREAM, asio::socket_base::max_listen_connections);
+        if (!listener) return Error{"--at unix:" + path + ": " + listener.error().message + "; choose another path"};
+        acceptor.assign(Local(), listener->release());
         unixPath_ = path;
         local_.emplace(std::move(acceptor));
         return {};

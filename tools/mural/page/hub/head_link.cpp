@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "common/ipc/user_socket.hpp"
 #include "common/json/json_text.hpp"
 #include "nodes/head/control/control_operations.hpp"
 
@@ -18,12 +19,6 @@ using boost::system::error_code;
 
 constexpr size_t kMaxHeadLineBytes = size_t{16} << 20;
 
-bool isOwnPeer(int fd) {
-    ucred peer{};
-    socklen_t size = sizeof peer;
-    return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
-}
-
 } // namespace
 
 Result<std::shared_ptr<HeadLink>> HeadLink::connect(boost::asio::io_context& io, const std::string& path) {
@@ -31,7 +26,7 @@ Result<std::shared_ptr<HeadLink>> HeadLink::connect(boost::asio::io_context& io,
     error_code error;
     socket.connect(boost::asio::local::stream_protocol::endpoint(path), error);
     if (error) return Error{"no connection to the session at " + path + ": " + error.message()};
-    if (!isOwnPeer(socket.native_handle()))
+    if (!isPeerOwn(socket.native_handle()))
         return Error{"no connection to the session at " + path + ": it belongs to another user"};
     return std::shared_ptr<HeadLink>(new HeadLink(std::move(socket)));
 }
