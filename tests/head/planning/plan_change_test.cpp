@@ -62,6 +62,16 @@ TEST_F(PlanChangeTest, replacesALostNodeOfTheSameTask) {
     EXPECT_EQ(change.leaving, Numbers{1});
 }
 
+TEST_F(PlanChangeTest, keepsNodesWhoseTurnAmongTheGpusChanges) {
+    SessionConfig with = tiles(6, 1);
+    with.hosts = {"wall1", "wall2", "wall1", "wall1", "wall2", "wall2"};
+    begin(with);
+    with.hosts.front() = "wall2";
+    const PlanChange change = changeTo(with);
+    EXPECT_EQ(change.kept, (Numbers{1, 2, 3, 4, 5}));
+    EXPECT_EQ(change.joining, Numbers{6});
+}
+
 TEST_F(PlanChangeTest, neverUsesANumberAgain) {
     begin(tiles(2, 1));
     PlanChange change = changeTo(tiles(3, 1));
