@@ -66,7 +66,7 @@ private:
     std::string received_;
 };
 
-class ControlServerTest : public testing::Test {
+class ControlServerTest : public ::testing::Test {
 protected:
     void start(int64_t stallMs = kPatienceMs) {
         ControlServerConfig config;

@@ -5,6 +5,7 @@
 
 #include "common/base/clock.hpp"
 #include "tests/control/sample_operations.hpp"
+#include "tests/sanitized.hpp"
 
 namespace mural {
 namespace {
@@ -54,7 +55,7 @@ size_t countLines(const std::string& bytes) {
 
 TEST(RandomRequests, haveOneValidReplyEach) {
     const ControlOperations operations = sampleOperations();
-    for (uint32_t seed = 1; seed <= 200; ++seed) {
+    for (uint32_t seed = 1; seed <= mural::testing::rounds(200); ++seed) {
         SCOPED_TRACE(seed);
         Requests requests(seed);
         ControlProtocol client(operations, Json::object());
@@ -85,7 +86,7 @@ TEST(RandomRequests, haveOneValidReplyEach) {
 TEST(RandomRequests, surviveAnyBytes) {
     const ControlOperations operations = sampleOperations();
     std::mt19937 random(7);
-    for (int run = 0; run < 100; ++run) {
+    for (uint64_t run = 0; run < mural::testing::rounds(100); ++run) {
         ControlProtocol client(operations, Json::object());
         for (int i = 0; i < 40 && client.acceptsBytes(); ++i) {
             std::string bytes(1 + random() % 4096, '\0');

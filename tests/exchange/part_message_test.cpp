@@ -3,6 +3,7 @@
 
 #include "nodes/exchange/part_message.hpp"
 #include "tests/exchange/test_parts.hpp"
+#include "tests/sanitized.hpp"
 
 namespace mural::test {
 namespace {
@@ -106,7 +107,7 @@ TEST(PartMessage, reportsDamageInOneLine) {
     PicturePart part = drawnPart(random, 200, 150, rule);
     const auto message = packPart(part, {0, 150}, rule, PartState::Complete, encoder);
     int refused = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (uint64_t i = 0; i < mural::testing::rounds(3000); ++i) {
         auto damaged = message;
         if (i % 3 == 0)
             damaged.resize(random() % damaged.size());

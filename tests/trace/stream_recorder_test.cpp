@@ -56,7 +56,8 @@ TEST_F(StreamRecorderTest, keepsOrderWithASmallQueue) {
 StreamBefore before() {
     StreamBefore before;
     before.programs.push_back({Event::ClientCame, 1, 5, "x"});
-    const auto bytes = PacketBuilder().context(1).window(1, 200, 100).window(2, 20, 10).swap(1, 0).bytes();
+    PacketBuilder packet; // owns the bytes
+    const auto bytes = packet.context(1).window(1, 200, 100).window(2, 20, 10).swap(1, 0).bytes();
     before.packets.push_back({wire::streamOf(1, 0), {bytes.begin(), bytes.end()}});
     before.wall.packet(wire::streamOf(1, 0), PacketBuilder().window(1, 200, 100).window(2, 20, 10).bytes());
     for (uint32_t i = 1; i <= 7; ++i) before.wall.packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());

@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kStream = wire::streamOf(1, 0);
 
-class StreamSnapshotTest : public testing::Test {
+class StreamSnapshotTest : public ::testing::Test {
 protected:
     StreamSnapshotTest() {
         PacketBuilder p;

@@ -10,7 +10,7 @@
 namespace mural::trace {
 namespace {
 
-class TraceFile : public testing::Test {
+class TraceFile : public ::testing::Test {
 protected:
     TraceFile()
         : folder_(std::filesystem::temp_directory_path() / ("mural-recording-test." + std::to_string(getpid()))) {

@@ -2,10 +2,12 @@
 before.
 """
 
+import json
 import os
 import select
 import shlex
 import subprocess
+import time
 
 from harness import programs
 
@@ -24,7 +26,7 @@ class SharedNodes:
     def __init__(self, launcher, display, folder):
         os.makedirs(folder)
         self.log_path = os.path.join(folder, "log")
-        self.wanted_frames = 0  # total that the nodes must have drawn at the end
+        self.frames = 0  # on the wall, after the last program
         statuses = os.path.join(folder, "statuses")
         os.mkfifo(statuses)
         self.statuses = os.open(statuses, os.O_RDWR)
@@ -58,6 +60,22 @@ class SharedNodes:
         watch.register(self.ended, select.POLLIN)
         ready = [descriptor for descriptor, _ in watch.poll(seconds * 1000)]
         return int(os.read(self.statuses, 16)) if self.statuses in ready else None
+
+    def new_frames(self, mural, seconds=10):
+        """Returns the number of frames on the wall since the last call. It waits for at least one, because the last frames
+        of a program can be late."""
+        deadline = time.monotonic() + seconds
+        while True:
+            frames = self._frames(mural)
+            if frames > self.frames or time.monotonic() > deadline or self.process.poll() is not None:
+                new, self.frames = frames - self.frames, frames
+                return new
+            time.sleep(0.02)
+
+    def _frames(self, mural):
+        done = subprocess.run([mural, "ctl", "--json", str(self.process.pid), "status"], stdout=subprocess.PIPE,
+                              stderr=subprocess.DEVNULL, timeout=60, check=False)
+        return json.loads(done.stdout)["result"]["frames"] if done.returncode == 0 else self.frames
 
     def end(self, seconds):
         """Returns the status of the run; None: it did not end in time, and was killed."""
