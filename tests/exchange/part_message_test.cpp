@@ -106,7 +106,7 @@ TEST(PartMessage, reportsDamageInOneLine) {
     PlaneEncoder encoder;
     PicturePart part = drawnPart(random, 200, 150, rule);
     const auto message = packPart(part, {0, 150}, rule, PartState::Complete, encoder);
-    int refused = 0;
+    uint64_t refused = 0;
     for (uint64_t i = 0; i < mural::testing::rounds(3000); ++i) {
         auto damaged = message;
         if (i % 3 == 0)
@@ -121,7 +121,7 @@ TEST(PartMessage, reportsDamageInOneLine) {
         ++refused;
         EXPECT_EQ(done.error().message.find('\n'), std::string::npos);
     }
-    EXPECT_GT(refused, 1000);
+    EXPECT_GT(refused, mural::testing::rounds(1000));
 }
 
 } // namespace

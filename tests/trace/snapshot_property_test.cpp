@@ -138,7 +138,7 @@ private:
 
 TEST(SnapshotProperty, leavesTheStateOfTheWholeStream) {
     size_t whole = 0, snapshotBytes = 0;
-    for (uint32_t seed = 1; seed <= testing::rounds(300); ++seed) {
+    for (uint32_t seed = 1; seed <= (testing::kSanitized ? 20U : 300U); ++seed) {
         RandomProgram program(seed);
         snapshot::LiveCommandLog log;
         StateModel all;
