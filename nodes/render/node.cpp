@@ -28,6 +28,7 @@
 #include "nodes/render/heartbeat.hpp"
 #include "nodes/render/lost_bits_notice.hpp"
 #include "nodes/render/node_description.hpp"
+#include "nodes/render/output_proof.hpp"
 #include "nodes/render/player_config.hpp"
 #include "nodes/render/replay_spans.hpp"
 #include "nodes/render/windows/tile_windows.hpp"
@@ -171,6 +172,7 @@ private:
             return connectNodes(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
         case wire::HeadCommand::Statistics: return spans_.record(rest);
         case wire::HeadCommand::ClockProbe: return replyClock(rest);
+        case wire::HeadCommand::ProveOutput: return proveOutput(rest);
         case wire::HeadCommand::Overlay: return !windows_ || windows_->overlay()->take(rest);
         case wire::HeadCommand::Finish:
             log::debug(log::Topic::Node, "the session ends");
@@ -196,6 +198,15 @@ private:
         const auto reply = clockReplyTo(arguments);
         if (reply) line_->send(wire::NodeMessage::ClockReply, std::as_bytes(std::span(&*reply, 1)));
         return reply.has_value();
+    }
+
+    // The proof follows the pictures of earlier frames to the head.
+    bool proveOutput(std::span<const std::byte> arguments) {
+        const auto command = argument<wire::ProveOutputCommand>(arguments);
+        if (!command || catchesUp_ || !player_) return command.has_value();
+        const auto proof = outputProofOf(*command, completed_, windows_ ? windows_->shown().get() : nullptr);
+        sendMessage(wire::NodeMessage::OutputProof, std::as_bytes(std::span(&proof, 1)));
+        return true;
     }
 
     bool setUp(const std::string& json) {
@@ -431,6 +442,7 @@ private:
     void frameDone(const PlayerOutputs::Frame& f) {
         uint32_t& latest = frames_[f.client];
         latest = std::max(latest, f.frame);
+        completed_ = {f.client, f.frame, monotonicNowNs()};
         if (!f.valid) invalid();
         if (catchesUp_ || invalid_) return;
         const uint64_t replayedNs = threadCpuNs();
@@ -541,6 +553,7 @@ private:
     WorkClock work_;
     std::map<uint32_t, uint64_t> calls_;  // commands by client, in completed packets
     std::map<uint32_t, uint32_t> frames_; // latest frame by client
+    CompletedFrame completed_;
     LostBitsNotice lostBits_;
     bool invalid_ = false;      // this node can't draw the picture of the others
     bool losesPackets_ = false; // planted fault

@@ -39,10 +39,11 @@ enum class HeadCommand : uint32_t {
     // u32 number, u32 nodes, {f64 start, end} of each: the ranges of a frame's draws that nodes draw, from the next
     // shared draws of each window on.
     RangeAssignment = 13,
-    Statistics = 14, // u32 on: the node sends FrameSpans with each frame from here on, or no longer
-    ClockProbe = 15, // i64 sentNs: the node replies ClockReply
-    Leave = 16,      // u32 node: that node sends everything about earlier packets, replies Goodbye, and is no member
-    Overlay = 17,    // u32 mode of each node, by number (nodes/overlay/overlay_mode.hpp): drawn over its windows
+    Statistics = 14,  // u32 on: the node sends FrameSpans with each frame from here on, or no longer
+    ClockProbe = 15,  // i64 sentNs: the node replies ClockReply
+    Leave = 16,       // u32 node: that node sends everything about earlier packets, replies Goodbye, and is no member
+    Overlay = 17,     // u32 mode of each node, by number (nodes/overlay/overlay_mode.hpp): drawn over its windows
+    ProveOutput = 18, // ProveOutputCommand: the node replies OutputProof (streamcodec/wire/output_proof.hpp)
 };
 struct SwitchToMulticastCommand {
     uint32_t node;

@@ -27,7 +27,8 @@ enum class NodeMessage : uint32_t {
     FrameSpans = 14,    // FrameSpansHeader + FrameSpan*, before the frame's FrameDone; only while statistics are on
     ClockReply = 15,    // ClockReplyMessage: the reply to ClockProbe
     ObjectRequest =
-        16, // u32 client, then a message about distributed objects to the program (objects/wire/messages.hpp)
+        16,           // u32 client, then a message about distributed objects to the program (objects/wire/messages.hpp)
+    OutputProof = 17, // OutputProofMessage: the reply to ProveOutput
 };
 
 struct MessageHeader {

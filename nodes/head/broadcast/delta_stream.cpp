@@ -104,7 +104,8 @@ void DeltaStream::filterPacket(uint32_t stream, std::span<const std::byte> paylo
     const auto command = static_cast<wire::HeadCommand>(words[0]);
     if (command == wire::HeadCommand::ClientGone)
         filter_.clientGone(words[1]);
-    else if (command != wire::HeadCommand::ClockProbe && command != wire::HeadCommand::Statistics)
+    else if (command != wire::HeadCommand::ClockProbe && command != wire::HeadCommand::Statistics &&
+             command != wire::HeadCommand::ProveOutput)
         filter_.releaseAll();
     encode(stream, payload);
 }

@@ -207,6 +207,13 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
             break;
         return handle([&] { return events_.nodeClock(location_.node, message); });
     }
+    case NodeMessage::OutputProof: {
+        wire::OutputProofMessage message{};
+        if (header.sizeBytes != sizeof(message)) break;
+        if (auto got = readStruct(message); !got) return got;
+        if (!wire::isSensibleTime(message.shownNs)) break;
+        return handle([&] { return events_.nodeOutputProof(location_.node, message); });
+    }
     }
     return Error{"it sent an invalid message (type " + std::to_string(header.type) + ", " +
                  std::to_string(header.sizeBytes) + " bytes); install the same version of mural on all machines"};

@@ -18,6 +18,7 @@
 #include "nodes/frame_transfer/transfer_scale.hpp"
 #include "streamcodec/wire/frame_spans.hpp"
 #include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/output_proof.hpp"
 #include "streamcodec/wire/replies.hpp"
 #include "transport/connection.hpp"
 
@@ -47,6 +48,7 @@ public:
     virtual Result<void> nodeFrameSpans(int node, const wire::FrameSpansHeader& header,
                                         const std::vector<wire::FrameSpan>& spans) = 0;
     virtual Result<void> nodeClock(int node, const wire::ClockReplyMessage& message) = 0;
+    virtual Result<void> nodeOutputProof(int node, const wire::OutputProofMessage& message) = 0;
     // The last call for a node that ended without Goodbye, after all of its messages.
     virtual void nodeLost(int node, const std::string& why) = 0;
 };

@@ -17,7 +17,7 @@ namespace mural {
 namespace {
 
 constexpr size_t kLocalBytes = size_t{16} << 20; // per direction between head and local node
-constexpr int kPollMs = 5;                       // a connection is noticed within this time
+constexpr int kLaunchPollMs = 5;                 // a connection is noticed within this time
 constexpr size_t kMaxEndpoints = 8;              // that a node tries
 
 std::string nameOf(const NodePlan& plan) { return "node " + std::to_string(plan.node) + " (" + plan.where + ")"; }
@@ -178,7 +178,7 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
         if (cancelled()) return Error{"the session was stopped before it began"};
         show(
             progress.lateTable(StartStep::Connected, monotonicNowNs(), [&](int node) { return whyLate(nodes, node); }));
-        poll(nullptr, 0, kPollMs);
+        poll(nullptr, 0, kLaunchPollMs);
     }
     for (LaunchedNode& node : nodes) {
         if (node.connection || !node.absence.empty()) continue;

@@ -107,6 +107,11 @@ void PreviewServer::offer(int64_t frame, std::shared_ptr<const OwnedPicture> pic
     [[maybe_unused]] const ssize_t n = write(wake_.get(), &one, sizeof one);
 }
 
+PreviewServer::Latest PreviewServer::latest() const {
+    const std::lock_guard lock(mutex_);
+    return {latest_, latestFrame_};
+}
+
 void PreviewServer::serve() {
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNicePreview);
     while (!stop_) {

@@ -32,6 +32,13 @@ public:
     PreviewServer& operator=(const PreviewServer&) = delete;
     ~PreviewServer(); // removes the socket
 
+    struct Latest {
+        std::shared_ptr<const OwnedPicture> picture; // null: none yet
+        int64_t frame = 0;
+    };
+    // Any thread.
+    [[nodiscard]] Latest latest() const;
+
     // Offers the latest picture of the wall. Does not block; any thread.
     void offer(int64_t frame, std::shared_ptr<const OwnedPicture> picture);
 
@@ -77,7 +84,7 @@ private:
     OwnedPicture eightBits_, part_;
     std::atomic<bool> hasWish_{false};
     std::atomic<bool> stop_{false};
-    std::mutex mutex_; // guards the members below
+    mutable std::mutex mutex_; // guards the members below
     std::shared_ptr<const OwnedPicture> latest_;
     int64_t latestFrame_ = 0;
     std::thread thread_;

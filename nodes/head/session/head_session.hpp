@@ -39,6 +39,7 @@
 #include "nodes/head/frames/picture_output.hpp"
 #include "nodes/head/capture/program_table.hpp"
 #include "nodes/head/planning/plan_change.hpp"
+#include "nodes/head/preview/output_proofs.hpp"
 #include "nodes/head/preview/preview_server.hpp"
 #include "nodes/head/recording/session_recording.hpp"
 #include "nodes/head/session/session_report.hpp"
@@ -128,6 +129,7 @@ private:
     Result<void> nodeFrameSpans(int node, const wire::FrameSpansHeader& header,
                                 const std::vector<wire::FrameSpan>& spans) override;
     Result<void> nodeClock(int node, const wire::ClockReplyMessage& message) override;
+    Result<void> nodeOutputProof(int node, const wire::OutputProofMessage& message) override;
     void nodeLost(int node, const std::string& why) override;
 
     // Statistics of frames (head_session_statistics.cpp).
@@ -140,6 +142,10 @@ private:
     void tickStatistics(int64_t nowNs);
     void announceStatistics();
     [[nodiscard]] bool areClocksKnown() const; // of all nodes that live
+
+    // Proofs that outputs are alive (head_session_outputs.cpp).
+    void addOutputsOperation(ControlOperations& operations);
+    Result<nlohmann::json> outputsJson(const nlohmann::json& arguments);
 
     // The overlay (head_session_overlay.cpp).
     static std::shared_ptr<Overlay> makeOverlay(std::shared_ptr<Overlay> given, OverlayMode mode);
@@ -295,6 +301,7 @@ private:
     FrameTracker frames_;
     ReplyAssembler answers_;
     DriverEventMerger driverEvents_;
+    OutputProofs outputProofs_;
     std::unique_ptr<PreviewServer> preview_; // null: the head receives no pictures, or has no socket for pages
     std::unique_ptr<PictureOutput> output_;  // null: the head receives no pictures
     PlanSequence plans_;

@@ -109,6 +109,7 @@ ControlOperations HeadSession::controlOperations() {
     addPlanOperations(all);
     addOverlayOperation(all);
     addFramesOperation(all);
+    addOutputsOperation(all);
     addEqualizerOperations(all, equalizers_); // a later plan may have equalizers
     return all;
 }

@@ -1,5 +1,6 @@
 #include "nodes/render/windows/tile_windows.hpp"
 
+#include "common/base/clock.hpp"
 #include "nodes/frame_spans/span_scope.hpp"
 #include "nodes/output/windows/wall_layout.hpp"
 
@@ -64,7 +65,9 @@ Result<void> TileWindows::show(const PlayerOutputs::Frame& f, SwapBarrier* barri
         const auto opened = reopen(width, height);
         if (!opened) return opened;
     }
-    std::vector<OwnedPicture> pictures(tiles_.size());
+    auto next = std::make_shared<ShownTiles>();
+    std::vector<OwnedPicture>& pictures = next->pictures;
+    pictures.resize(tiles_.size());
     std::vector<WallWindows::TilePicture> shown;
     for (size_t i = 0; i < tiles_.size(); ++i) {
         const PixelViewport& tile = tiles_[i];
@@ -72,13 +75,30 @@ Result<void> TileWindows::show(const PlayerOutputs::Frame& f, SwapBarrier* barri
         pictures[i].assign({tile.w, tile.h, f.pixels(tile)});
         shown.push_back({i, pictures[i].view()});
     }
-    if (!barrier) return windows_->showAll(shown);
-    const SwapKey key{f.client, f.window, f.frame};
-    if (const auto drawn = windows_->drawAll(shown); !drawn) return drawn;
-    auto presentedNs = windows_->present(awaitBarrier(*barrier, key));
+    auto presentedNs = present(shown, {f.client, f.window, f.frame}, barrier);
     if (!presentedNs) return presentedNs.error();
-    barrier->shown(key, *presentedNs);
+    next->client = f.client;
+    next->window = f.window;
+    next->frame = f.frame;
+    next->shownNs = *presentedNs;
+    next->width = width;
+    next->height = height;
+    next->tiles = tiles_;
+    shown_ = std::move(next);
     return {};
+}
+
+// Returns the time at which the server had the pictures.
+Result<int64_t> TileWindows::present(std::span<const WallWindows::TilePicture> pictures, const SwapKey& key,
+                                     SwapBarrier* barrier) {
+    if (!barrier) {
+        if (const auto done = windows_->showAll(pictures); !done) return done.error();
+        return monotonicNowNs();
+    }
+    if (const auto drawn = windows_->drawAll(pictures); !drawn) return drawn.error();
+    auto presentedNs = windows_->present(awaitBarrier(*barrier, key));
+    if (presentedNs) barrier->shown(key, *presentedNs);
+    return presentedNs;
 }
 
 } // namespace mural

@@ -6,6 +6,7 @@
 #include "common/base/main_window.hpp"
 #include "nodes/output/windows/wall_windows.hpp"
 #include "nodes/render/windows/overlay_part.hpp"
+#include "nodes/render/windows/shown_tiles.hpp"
 #include "nodes/player/player_setup.hpp"
 #include "nodes/session/session_config.hpp"
 #include "nodes/swap_barrier/swap_barrier.hpp"
@@ -19,6 +20,8 @@ public:
     [[nodiscard]] const std::shared_ptr<OverlayPart>& overlay() const { return overlay_; }
     // Shows the tiles of the main window (the largest that swaps). With a barrier, waits for its other members.
     Result<void> show(const PlayerOutputs::Frame& frame, SwapBarrier* barrier);
+    // What the windows show; null: nothing yet.
+    [[nodiscard]] const std::shared_ptr<const ShownTiles>& shown() const { return shown_; }
 
     void windowGone(uint32_t client, uint32_t window) { mainWindow_.windowGone(client, window); }
     void clientGone(uint32_t client) { mainWindow_.clientGone(client); }
@@ -28,6 +31,8 @@ private:
     [[nodiscard]] std::vector<TileWindow> windowsFor(int width, int height) const;
     Result<void> reopen(int width, int height);
     static int64_t awaitBarrier(SwapBarrier& barrier, const SwapKey& key);
+    Result<int64_t> present(std::span<const WallWindows::TilePicture> pictures, const SwapKey& key,
+                            SwapBarrier* barrier);
 
     NodeSetup setup_;
     const std::shared_ptr<OverlayPart> overlay_;
@@ -35,6 +40,7 @@ private:
     int width_ = 0, height_ = 0;
     MainWindow mainWindow_;
     std::vector<PixelViewport> tiles_;
+    std::shared_ptr<const ShownTiles> shown_;
 };
 
 } // namespace mural

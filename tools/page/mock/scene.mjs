@@ -149,7 +149,7 @@ export class Scene {
             return {
                 output: this.names[i], node: node.node, frame,
                 hash: (BigInt(frame * 8 + i) * 0x9e3779b97f4a7c15n & 0xffffffffffffffffn).toString(16).padStart(16, '0'),
-                ageSeconds: isStill ? (this.frame - frame) * kFrameSeconds : 0.2 + 0.1 * i,
+                ageSeconds: isStill ? (this.frame - frame) * kFrameSeconds : 0.2 + 0.1 * i, skewMs: i < 2 ? 0.3 * i : null,
             };
         });
     }

@@ -9,8 +9,8 @@ namespace mural::page {
 namespace {
 
 constexpr std::array<std::string_view, 3> kRoleNames = {"view", "input", "operate"};
-constexpr std::array<std::string_view, 9> kReading = {"help",       "status",      "nodes",   "report", "frames",
-                                                      "equalizers", "unsubscribe", "preview", "wall"};
+constexpr std::array<std::string_view, 10> kReading = {"help",       "status",      "nodes",   "report", "frames",
+                                                       "equalizers", "unsubscribe", "preview", "wall",   "outputs"};
 // Without arguments these return a setting, and with arguments they change it.
 constexpr std::array<std::string_view, 5> kSettings = {"latency", "overlay", "layout", "plan", "log-level"};
 constexpr std::array<std::string_view, 2> kLease = {"input-take", "input-release"};

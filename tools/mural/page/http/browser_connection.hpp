@@ -22,7 +22,7 @@
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
 
-#include "tools/mural/page/http/page_site.hpp"
+#include "tools/mural/page/http/connection_site.hpp"
 
 namespace mural::page {
 
@@ -42,15 +42,15 @@ class BrowserSocket : public ViewerSocket, public std::enable_shared_from_this<B
 public:
     static constexpr size_t kMaxUnsentBytes = size_t{8} << 20;
 
-    BrowserSocket(Stream stream, PageSite& site, std::string address, std::shared_ptr<void> slot)
+    BrowserSocket(Stream stream, ConnectionSite& site, std::string address, std::shared_ptr<void> slot)
         : socket_(std::move(stream)),
-          hub_(site.hub()),
+          site_(site),
           address_(std::move(address)),
           slot_(std::move(slot)),
           closeTimer_(socket_.get_executor()) {}
 
     ~BrowserSocket() override {
-        if (viewer_ != 0) hub_.left(viewer_);
+        if (viewer_ != 0) site_.left(viewer_);
     }
 
     void accept(beast::http::request<beast::http::string_body> request) {
@@ -65,7 +65,7 @@ public:
         const auto kept = std::make_shared<decltype(request)>(std::move(request)); // until the handshake is over
         socket_.async_accept(*kept, [self = this->shared_from_this(), kept](beast::error_code error) {
             if (error) return;
-            self->viewer_ = self->hub_.join(*self, self->address_);
+            self->viewer_ = self->site_.join(*self, self->address_);
             if (self->viewer_ == 0) self->close(kCloseTooMany, "the page has as many viewers as it permits");
             self->read();
         });
@@ -132,11 +132,11 @@ private:
             }
             if (!self->socket_.got_text()) {
                 const int viewer = std::exchange(self->viewer_, 0);
-                self->hub_.left(viewer);
+                self->site_.left(viewer);
                 self->close(1003, "a viewer sends text only");
             } else {
                 const std::string text = beast::buffers_to_string(self->buffer_.data());
-                self->hub_.received(self->viewer_, text);
+                self->site_.received(self->viewer_, text);
             }
             self->buffer_.consume(self->buffer_.size());
             self->read();
@@ -156,11 +156,11 @@ private:
     void over() {
         if (std::exchange(isOver_, true)) return;
         closeTimer_.cancel();
-        if (const int viewer = std::exchange(viewer_, 0); viewer != 0) hub_.left(viewer);
+        if (const int viewer = std::exchange(viewer_, 0); viewer != 0) site_.left(viewer);
     }
 
     beast::websocket::stream<Stream> socket_;
-    PageHub& hub_;
+    ConnectionSite& site_;
     const std::string address_;
     const std::shared_ptr<void> slot_; // counts the connections
     asio::steady_timer closeTimer_;
@@ -174,7 +174,7 @@ private:
 
 template <class Stream> class BrowserConnection : public std::enable_shared_from_this<BrowserConnection<Stream>> {
 public:
-    BrowserConnection(Stream stream, PageSite& site, std::string address, std::shared_ptr<void> slot)
+    BrowserConnection(Stream stream, ConnectionSite& site, std::string address, std::shared_ptr<void> slot)
         : stream_(std::move(stream)), site_(site), address_(std::move(address)), slot_(std::move(slot)) {}
 
     void begin() {
@@ -275,7 +275,7 @@ private:
     }
 
     Stream stream_;
-    PageSite& site_;
+    ConnectionSite& site_;
     const std::string address_;
     const std::shared_ptr<void> slot_; // counts the connections
     beast::flat_buffer buffer_;
@@ -285,7 +285,7 @@ private:
 };
 
 // Serves a new connection. Each kind of stream is compiled in a source of its own, because Beast's templates are large.
-void servePlain(PlainStream stream, PageSite& site, std::string address, std::shared_ptr<void> slot);
-void serveTls(TlsStream stream, PageSite& site, std::string address, std::shared_ptr<void> slot);
+void servePlain(PlainStream stream, ConnectionSite& site, std::string address, std::shared_ptr<void> slot);
+void serveTls(TlsStream stream, ConnectionSite& site, std::string address, std::shared_ptr<void> slot);
 
 } // namespace mural::page

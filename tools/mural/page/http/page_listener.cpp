@@ -77,7 +77,7 @@ public:
         return {};
     }
 
-    void serve(PageSite& site) {
+    void serve(ConnectionSite& site) {
         site_ = &site;
         if (tcp_) acceptTcp();
         if (local_) acceptLocal();
@@ -162,7 +162,7 @@ private:
     std::optional<Tcp::acceptor> tcp_;
     std::optional<Local::acceptor> local_;
     std::string unixPath_;
-    PageSite* site_ = nullptr;
+    ConnectionSite* site_ = nullptr;
     std::shared_ptr<void> slot_ = std::make_shared<int>(0); // each connection has a reference
 };
 
@@ -182,7 +182,7 @@ PageListener::PageListener(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) 
 PageListener::~PageListener() = default;
 
 uint16_t PageListener::port() const { return impl_->port(); }
-void PageListener::serve(PageSite& site) { impl_->serve(site); }
+void PageListener::serve(ConnectionSite& site) { impl_->serve(site); }
 void PageListener::close() { impl_->close(); }
 
 } // namespace mural::page

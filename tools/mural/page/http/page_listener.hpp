@@ -9,7 +9,7 @@
 #include <boost/asio/io_context.hpp>
 
 #include "common/base/result.hpp"
-#include "tools/mural/page/http/page_site.hpp"
+#include "tools/mural/page/http/connection_site.hpp"
 #include "tools/mural/page/http/tls_files.hpp"
 
 namespace mural::page {
@@ -33,7 +33,7 @@ public:
 
     [[nodiscard]] uint16_t port() const; // 0: a Unix socket
     // Accepts from now on. `site` must outlive the io_context's handlers.
-    void serve(PageSite& site);
+    void serve(ConnectionSite& site);
     // Accepts no more.
     void close();
 

@@ -13,27 +13,11 @@
 #include <boost/asio/io_context.hpp>
 
 #include "tools/mural/page/access/request_origin.hpp"
+#include "tools/mural/page/http/connection_site.hpp"
 #include "tools/mural/page/hub/page_hub.hpp"
 #include "tools/mural/page/protocol/rate_limit.hpp"
 
 namespace mural::page {
-
-inline constexpr size_t kMaxHeaderBytes = size_t{8} << 10, kMaxBodyBytes = size_t{1} << 20;
-
-struct HttpRequest {
-    std::string method;
-    std::string path; // with the query, as the browser sent it
-    std::string host, origin, authorization;
-    std::string body;
-    std::string address; // of the client, for limits and the log
-};
-
-struct HttpResponse {
-    unsigned status = 200;
-    std::string type = "text/plain; charset=utf-8";
-    std::string body;
-    std::vector<std::pair<std::string, std::string>> headers; // beside those of every response
-};
 
 struct SiteConfig {
     std::vector<std::string> hosts; // by which the page may be reached; empty: any, on a Unix socket
@@ -41,18 +25,16 @@ struct SiteConfig {
     bool hasOpenMetrics = false;    // /metrics needs no token
 };
 
-class PageSite {
+class PageSite : public ConnectionSite {
 public:
-    using OnResponse = std::function<void(HttpResponse response)>;
-
     PageSite(boost::asio::io_context& io, PageHub& hub, SiteConfig config);
 
-    void handle(HttpRequest request, OnResponse onResponse);
-    // Returns why a WebSocket is refused; nullopt: it is not.
-    [[nodiscard]] std::optional<HttpResponse> refusal(const HttpRequest& request) const;
-    // Returns the headers of every response.
-    [[nodiscard]] std::vector<std::pair<std::string, std::string>> commonHeaders() const;
-    [[nodiscard]] PageHub& hub() { return hub_; }
+    void handle(HttpRequest request, OnResponse onResponse) override;
+    [[nodiscard]] std::optional<HttpResponse> refusal(const HttpRequest& request) const override;
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> commonHeaders() const override;
+    int join(ViewerSocket& socket, const std::string& address) override { return hub_.join(socket, address); }
+    void received(int viewer, std::string_view text) override { hub_.received(viewer, text); }
+    void left(int viewer) override { hub_.left(viewer); }
 
 private:
     struct Call { // an accepted request of the interface

@@ -2,7 +2,7 @@
 
 namespace mural::page {
 
-void servePlain(PlainStream stream, PageSite& site, std::string address, std::shared_ptr<void> slot) {
+void servePlain(PlainStream stream, ConnectionSite& site, std::string address, std::shared_ptr<void> slot) {
     std::make_shared<BrowserConnection<PlainStream>>(std::move(stream), site, std::move(address), std::move(slot))
         ->begin();
 }

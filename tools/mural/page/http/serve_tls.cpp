@@ -2,7 +2,7 @@
 
 namespace mural::page {
 
-void serveTls(TlsStream stream, PageSite& site, std::string address, std::shared_ptr<void> slot) {
+void serveTls(TlsStream stream, ConnectionSite& site, std::string address, std::shared_ptr<void> slot) {
     std::make_shared<BrowserConnection<TlsStream>>(std::move(stream), site, std::move(address), std::move(slot))
         ->begin();
 }

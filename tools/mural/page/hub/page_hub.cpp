@@ -11,6 +11,7 @@
 #include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/control/control_operations.hpp"
+#include "tools/mural/page/hub/output_list.hpp"
 #include "tools/mural/page/hub/page_replies.hpp"
 #include "tools/mural/page/input/program_input.hpp"
 
@@ -22,6 +23,8 @@ constexpr int64_t kHelloNs = 5 * kNsPerS;
 constexpr std::chrono::milliseconds kBusyTick{10}, kCalmTick{100};
 constexpr int64_t kAliveEveryNs = 2 * kNsPerS, kAliveNs = 6 * kNsPerS;
 constexpr int64_t kFramesEveryNs = 250 * kNsPerMs;
+constexpr int64_t kOutputsEveryNs = kNsPerS, kWallEveryNs = 5 * kNsPerS;
+constexpr int64_t kProofTimeNs = 200 * kNsPerMs; // within which the nodes usually prove their outputs
 constexpr size_t kMaxWaiting = 64; // requests of a viewer without a reply
 constexpr size_t kMaxLogLines = 1000;
 
@@ -90,6 +93,7 @@ void PageHub::tick() {
     checkViewers(nowNs);
     subscribeToHead();
     fetchFrames(nowNs);
+    fetchOutputs(nowNs);
     if (pictures_.isWanted()) pictures_.tick(nowNs);
     fan_.flush(nowNs, [this](int viewer, const Json& message) { send(viewer, message); });
     if (nowNs - askedAtNs_ >= kAliveEveryNs) {
@@ -321,6 +325,32 @@ void PageHub::fetchFrames(int64_t nowNs) {
         const auto next = result->find("next");
         if (next != result->end() && next->is_number_unsigned()) nextFrame_ = next->get<uint64_t>();
         fan_.offer(PageTopic::Timeline, *result, 0);
+    });
+}
+
+// Requests the proofs for the topic `outputs`, and the wall that they belong to. The first of two requests makes the
+// nodes prove their outputs; the second one fetches the proofs.
+void PageHub::fetchOutputs(int64_t nowNs) {
+    if (fan_.wantedIntervalMs(PageTopic::Outputs) == 0 || isFetchingOutputs_) return;
+    if (wall_.is_null() ? nowNs - wallAtNs_ >= kOutputsEveryNs : nowNs - wallAtNs_ >= kWallEveryNs) {
+        wallAtNs_ = nowNs;
+        describeWall([this](const Json& reply) {
+            if (const auto result = reply.find("result"); result != reply.end()) wall_ = *result;
+        });
+    }
+    if (wall_.is_null()) return;
+    if (nowNs - outputsAtNs_ >= kOutputsEveryNs) {
+        outputsAtNs_ = nowNs;
+        isProofDue_ = true;
+        return quick_->request("outputs", Json::object(), [](const Json&) {});
+    }
+    if (!isProofDue_ || nowNs - outputsAtNs_ < kProofTimeNs) return;
+    isProofDue_ = false;
+    isFetchingOutputs_ = true;
+    quick_->request("outputs", {{"areas", areasOf(wall_)}}, [this](const Json& reply) {
+        isFetchingOutputs_ = false;
+        if (const auto result = reply.find("result"); result != reply.end())
+            fan_.offer(PageTopic::Outputs, outputList(wall_, *result), 0);
     });
 }
 

@@ -108,6 +108,7 @@ private:
     void checkViewers(int64_t nowNs);
     void subscribeToHead();
     void fetchFrames(int64_t nowNs);
+    void fetchOutputs(int64_t nowNs);
     void takeMessage(const Json& message);
     void remember(const Json& message);
     void end();
@@ -157,6 +158,9 @@ private:
     uint64_t nextFrame_ = 0;                // of the timeline; 0: nobody subscribes
     int64_t framesAtNs_ = 0;
     bool isFetchingFrames_ = false;
+    Json wall_;                               // latest description, of the topic `outputs`; null: none
+    int64_t wallAtNs_ = 0, outputsAtNs_ = 0;
+    bool isFetchingOutputs_ = false, isProofDue_ = false;
     int64_t askedAtNs_ = 0, repliedAtNs_ = 0; // of the check that the head is alive
     std::deque<std::string> log_;             // latest lines
     uint64_t invalidMessages_ = 0, deniedRequests_ = 0;

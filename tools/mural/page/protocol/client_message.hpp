@@ -7,11 +7,10 @@
 #include <string_view>
 #include <variant>
 
+#include "tools/mural/page/http/connection_site.hpp"
 #include "tools/mural/page/protocol/input_event.hpp"
 
 namespace mural::page {
-
-inline constexpr size_t kMaxTextMessageBytes = size_t{64} << 10;
 
 struct HelloMessage {
     std::string token;

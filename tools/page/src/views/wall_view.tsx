@@ -24,8 +24,8 @@ interface Shown {
 }
 
 // The output of a segment has its name; otherwise it is the only output of its node.
-function outputOf(segment: Segment, outputs: Output[]): Output | undefined {
-    return outputs.find(output => output.output === segment.name && output.node === segment.node)
+function outputOf(segment: Segment, canvas: Canvas, outputs: Output[]): Output | undefined {
+    return outputs.find(output => output.output === segment.name && (output.canvas ?? canvas.name) === canvas.name)
         ?? outputs.find(output => output.node === segment.node);
 }
 
@@ -40,7 +40,7 @@ function useShown({ session }: ViewProps): Shown[] {
     const newest = Math.max(...(outputs.length ? outputs.map(output => output.frame) : (status?.nodes ?? []).map(node => node.frames)));
     return (wall?.canvases ?? []).flatMap(canvas => canvas.segments.map(segment => {
         const node = status?.nodes.find(entry => entry.node === segment.node);
-        const output = outputOf(segment, outputs);
+        const output = outputOf(segment, canvas, outputs);
         const ofNode = node ? conditionOf(node, session.history.latest) : { mark: 'idle' as const, word: 'no node' };
         const ofOutput = outputCondition(output, waited);
         const isNodeFirst = ofNode.mark === 'bad' || ofNode.mark === 'idle' || ofOutput?.mark !== 'bad';
@@ -58,6 +58,10 @@ function useShown({ session }: ViewProps): Shown[] {
 
 function behindText(behind: number): string {
     return Number.isFinite(behind) ? (behind === 0 ? 'newest' : `−${count(behind)}`) : kNone;
+}
+
+function skewText({ behind, output }: Shown): string {
+    return behindText(behind) + (output?.skewMs != null ? `, ${ms(output.skewMs)}` : '');
 }
 
 function SegmentTile({ shown, frame, props }: { shown: Shown; frame: ReturnType<typeof frameOf>; props: ViewProps }) {
@@ -123,8 +127,9 @@ export function WallView(props: ViewProps) {
                         ) },
                         { name: 'State', key: entry => entry.condition.word, show: entry => <StateMark {...entry.condition} /> },
                         { name: 'Frame', isNumber: true, key: entry => entry.frame, show: entry => count(entry.frame) },
-                        { name: 'Skew', isNumber: true, key: entry => entry.behind, hint: 'frames behind the newest output',
-                            show: entry => behindText(entry.behind) },
+                        { name: 'Skew', isNumber: true, key: entry => entry.behind,
+                            hint: 'frames behind the newest output, and time after the first window of this frame',
+                            show: skewText },
                         { name: 'Confirmed', isNumber: true, key: entry => entry.ageSeconds,
                             hint: 'time since the picture of this output was confirmed',
                             show: entry => (entry.output ? `${duration(entry.ageSeconds)} ago` : kNone) },

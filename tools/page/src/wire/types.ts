@@ -107,11 +107,14 @@ export interface Wall {
 }
 
 export interface Output {
+    canvas?: string;
     output: string;
     node: number;
     hash: string;
     frame: number;
     ageSeconds: number;
+    // Time after the first window that showed this frame; null: the head has the picture.
+    skewMs: number | null;
 }
 
 export interface Viewer {
