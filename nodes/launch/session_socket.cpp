@@ -73,7 +73,9 @@ std::string pageSocketOf(const std::string& sessionSocket) { return folderOf(ses
 
 void removeSessionSocket(const std::string& path) {
     unlink(path.c_str());
-    for (const std::string& other : {controlSocketOf(path), pictureSocketOf(path), pageSocketOf(path)})
+    const std::string links = folderOf(path) + "/page-links"; // a file of the page (tools/mural/page/access)
+    for (const std::string& other :
+         {controlSocketOf(path), pictureSocketOf(path), pageSocketOf(path), links, links + ".new"})
         unlink(other.c_str());
     rmdir(folderOf(path).c_str());
 }

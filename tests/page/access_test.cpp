@@ -4,7 +4,9 @@
 #include <set>
 
 #include "common/base/clock.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/mural/page/access/failure_limit.hpp"
+#include "tools/mural/page/access/link_store.hpp"
 #include "tools/mural/page/access/link_table.hpp"
 #include "tools/mural/page/access/request_origin.hpp"
 #include "tools/mural/page/access/role.hpp"
@@ -16,7 +18,8 @@ namespace {
 using Json = nlohmann::json;
 
 TEST(Role, readingOperationsRequireView) {
-    for (const char* operation : {"status", "nodes", "report", "frames", "help", "equalizers", "preview", "wall"})
+    for (const char* operation :
+         {"status", "nodes", "report", "frames", "help", "equalizers", "preview", "wall", "outputs"})
         EXPECT_EQ(requiredRole(operation, Json::object()), Role::View) << operation;
 }
 
@@ -54,6 +57,76 @@ protected:
     }
     LinkTable links_;
 };
+
+TEST_F(LinkTableTest, outlivesItsPage) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.at("page-links");
+    LinkTable none;
+    EXPECT_TRUE(restoreLinks(path, none, 0)) << "no file";
+    LinkTerms terms;
+    terms.role = Role::Input;
+    terms.seconds = 60;
+    terms.most = 1;
+    terms.name = "class";
+    const auto kept = create(terms), revoked = create({});
+    EXPECT_TRUE(links_.open(kept.link));
+    EXPECT_TRUE(links_.revoke(revoked.link));
+    ASSERT_TRUE(keepLinks(path, links_, 0).ok());
+
+    LinkTable later;
+    ASSERT_TRUE(restoreLinks(path, later, kNsPerS));
+    const auto found = later.find(kept.token, kNsPerS);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->role, Role::Input);
+    EXPECT_EQ(found->name, "class");
+    EXPECT_FALSE(later.find(revoked.token, kNsPerS));
+    EXPECT_FALSE(later.find(kept.token, 61 * kNsPerS)) << "it keeps its expiry";
+    EXPECT_TRUE(later.open(kept.link)) << "pages of the earlier process do not count";
+    EXPECT_FALSE(later.open(kept.link));
+    auto next = later.create({}, kNsPerS);
+    ASSERT_TRUE(next.ok());
+    EXPECT_GT(next->link, kept.link);
+    LinkTable expired;
+    ASSERT_TRUE(restoreLinks(path, expired, 61 * kNsPerS));
+    EXPECT_TRUE(expired.list(61 * kNsPerS).empty());
+}
+
+TEST_F(LinkTableTest, invalidListsRestoreNothing) {
+    const Json good = [this] {
+        create({});
+        return links_.kept(0);
+    }();
+    const auto restores = [&](const char* member, const Json& value) {
+        Json bad = good;
+        bad["links"][0][member] = value;
+        LinkTable table;
+        const bool isDone = table.restore(bad, 0);
+        return isDone || !table.list(0).empty();
+    };
+    EXPECT_FALSE(restores("role", "owner"));
+    EXPECT_FALSE(restores("link", 0));
+    EXPECT_FALSE(restores("most", -1));
+    EXPECT_FALSE(restores("hash", Json::array({1, 2})));
+    EXPECT_FALSE(restores("hash", std::vector<int>(32, 256)));
+    EXPECT_FALSE(restores("expiresNs", "soon"));
+    EXPECT_FALSE(restores("name", nullptr));
+    LinkTable table;
+    for (const Json& bad : {Json(), Json::array(), Json{{"links", 3}}, Json{{"links", {1}}}})
+        EXPECT_FALSE(table.restore(bad, 0)) << bad;
+    EXPECT_TRUE(table.restore(good, 0));
+}
+
+TEST_F(LinkTableTest, limitEndsTheOldestOnes) {
+    LinkTerms owner;
+    owner.role = Role::Operate;
+    owner.name = "owner";
+    const auto first = create(owner), other = create({}), second = create(owner), third = create(owner);
+    links_.limit("owner", Role::Operate, 2);
+    EXPECT_FALSE(links_.find(first.token, 0));
+    EXPECT_TRUE(links_.find(other.token, 0) && links_.find(second.token, 0) && links_.find(third.token, 0));
+    links_.limit("owner", Role::Operate, 5);
+    EXPECT_TRUE(links_.find(second.token, 0));
+}
 
 TEST_F(LinkTableTest, tokensHave256BitsAndDiffer) {
     std::set<std::string> tokens;

@@ -496,6 +496,9 @@ def ends(context):
             viewer.ask("preview", {"class": "preview"})
             if not viewer.pictures(1):
                 wrong.append("no pictures of a second page")
+            _, shared = page.link("view", name="class")
+            revoked, ended_token = page.link("view")
+            request(page.url, "/api/v1/links/%d" % revoked, page.token, "DELETE")
             os.kill(state["headPid"], signal.SIGKILL)
             event = viewer.receive(lambda m: isinstance(m, dict) and m.get("topic") == "events" and m["data"][0]["event"] == "session-ended", 3)
             if event is None or viewer.close_code(5) != SESSION_ENDED:
@@ -507,3 +510,8 @@ def ends(context):
 
 if __name__ == "__main__":
     sys.exit(cases.main(__doc__))
+            with WebSocket(page.url) as other:
+                if (other.hello(shared) or {}).get("role") != "view":
+                    wrong.append("a link does not outlive its page")
+            if request(page.url, "/api/v1/state", ended_token)[0] != 401:
+                wrong.append("a revoked link lives again")

@@ -116,8 +116,10 @@ Result<void> announce(PageHub& hub, const PageArguments& arguments, const PageAd
     terms.seconds = 0;
     terms.most = 0;
     terms.name = "owner";
+    hub.links().limit(terms.name, terms.role, 1); // the browser of an earlier page stays known
     auto owner = hub.links().create(terms, monotonicNowNs());
     if (!owner) return owner.error();
+    hub.keepLinks();
     if (!arguments.tokenFile.empty())
         if (const auto written = writeToken(arguments.tokenFile, owner->token); !written) return written.error();
     fmt::print("{}#t={}\n", url, owner->token);

@@ -126,6 +126,58 @@ bool LinkTable::isValid(int link, int64_t nowNs) const {
     return found != links_.end() && found->expiresNs > nowNs;
 }
 
+Json LinkTable::kept(int64_t nowNs) const {
+    Json list = Json::array();
+    for (const Link& link : links_) {
+        if (link.expiresNs <= nowNs) continue;
+        list.push_back({{"link", link.number},
+                        {"hash", std::vector<int>(link.hash.begin(), link.hash.end())},
+                        {"role", nameOf(link.terms.role)},
+                        {"expiresNs", link.expiresNs},
+                        {"most", link.terms.most},
+                        {"name", link.terms.name}});
+    }
+    return {{"links", std::move(list)}};
+}
+
+bool LinkTable::restore(const Json& kept, int64_t nowNs) {
+    const auto list = kept.is_object() ? kept.find("links") : kept.end();
+    if (list == kept.end() || !list->is_array() || list->size() + links_.size() > kMaxLinks) return false;
+    std::vector<Link> restored;
+    for (const Json& entry : *list) {
+        Link link;
+        const auto value = [&entry](const char* name, int64_t least, int64_t most) {
+            const auto found = entry.is_object() ? entry.find(name) : entry.end();
+            return found == entry.end() ? std::nullopt : wholeWithin(*found, least, most);
+        };
+        const auto number = value("link", 1, INT32_MAX), most = value("most", 0, kMaxPagesOfLink),
+                   expires = value("expiresNs", 0, INT64_MAX);
+        if (!number || !most || !expires) return false;
+        const Json role = entry.value("role", Json()), name = entry.value("name", Json()),
+                   hash = entry.value("hash", Json());
+        const auto known = role.is_string() ? roleOfName(role.get<std::string>()) : std::nullopt;
+        if (!known || !name.is_string() || !hash.is_array() || hash.size() != link.hash.size()) return false;
+        for (size_t i = 0; i < hash.size(); ++i) {
+            const auto byte = wholeWithin(hash[i], 0, UINT8_MAX);
+            if (!byte) return false;
+            link.hash[i] = static_cast<unsigned char>(*byte);
+        }
+        link.number = static_cast<int>(*number);
+        link.terms = {*known, 0, static_cast<int>(*most), name.get<std::string>()};
+        link.expiresNs = *expires;
+        lastNumber_ = std::max(lastNumber_, link.number);
+        if (link.expiresNs > nowNs) restored.push_back(std::move(link));
+    }
+    links_.insert(links_.end(), restored.begin(), restored.end());
+    return true;
+}
+
+void LinkTable::limit(const std::string& name, Role role, size_t most) {
+    const auto isOne = [&](const Link& link) { return link.terms.name == name && link.terms.role == role; };
+    auto surplus = std::ranges::count_if(links_, isOne) - static_cast<std::ptrdiff_t>(most);
+    std::erase_if(links_, [&](const Link& link) { return isOne(link) && surplus-- > 0; });
+}
+
 Json LinkTable::list(int64_t nowNs) const {
     Json list = Json::array();
     for (const Link& link : links_) {

@@ -21,7 +21,7 @@ inline constexpr int kMaxPagesOfLink = 64;
 
 struct LinkTerms {
     Role role = Role::View;
-    int64_t seconds = 8 * 3600; // lifetime; 0: as long as the page
+    int64_t seconds = 8 * 3600; // lifetime; 0: as long as the session
     int most = 20;              // pages that may be open at once; 0: no limit
     std::string name;
 };
@@ -51,6 +51,13 @@ public:
     [[nodiscard]] bool isValid(int link, int64_t nowNs) const;
     // Returns an array of objects without tokens: link, name, role, secondsLeft (null: no expiry), most, open.
     [[nodiscard]] nlohmann::json list(int64_t nowNs) const;
+
+    // All links with the hashes of their tokens, for a later page of the session.
+    [[nodiscard]] nlohmann::json kept(int64_t nowNs) const;
+    // Adds the links of kept(). Returns false, and adds none, for anything else.
+    bool restore(const nlohmann::json& kept, int64_t nowNs);
+    // Ends the oldest links with this name and role, so that at most `most` of them remain.
+    void limit(const std::string& name, Role role, size_t most);
 
 private:
     using Hash = std::array<unsigned char, 32>;

@@ -11,6 +11,7 @@
 #include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/control/control_operations.hpp"
+#include "tools/mural/page/access/link_store.hpp"
 #include "tools/mural/page/hub/output_list.hpp"
 #include "tools/mural/page/hub/page_replies.hpp"
 #include "tools/mural/page/input/program_input.hpp"
@@ -27,6 +28,7 @@ constexpr int64_t kOutputsEveryNs = kNsPerS, kWallEveryNs = 5 * kNsPerS;
 constexpr int64_t kProofTimeNs = 200 * kNsPerMs; // within which the nodes usually prove their outputs
 constexpr size_t kMaxWaiting = 64; // requests of a viewer without a reply
 constexpr size_t kMaxLogLines = 1000;
+constexpr const char* kLinksName = "page-links"; // removed by nodes/launch/session_socket.cpp
 
 // Returns the folder of the head's sockets with another name.
 std::string socketBeside(const std::string& controlPath, const char* name) {
@@ -69,6 +71,8 @@ void PageHub::begin() {
     repliedAtNs_ = monotonicNowNs();
     quick_->begin([this](const Json& message) { takeMessage(message); }, [this] { end(); });
     slow_->begin([](const Json&) {}, [this] { end(); });
+    if (!restoreLinks(socketBeside(config_.controlPath, kLinksName), links_, monotonicNowNs()))
+        log::warning(log::Topic::Session, "the links of an earlier page are unreadable, and ended");
     tick();
 }
 
@@ -114,6 +118,11 @@ int PageHub::join(ViewerSocket& socket, const std::string& address) {
     if (viewers_.size() >= kMaxViewers || hasEnded_) return 0;
     const int number = ++lastViewer_;
     Viewer& viewer = viewers_[number];
+void PageHub::keepLinks() {
+    const auto kept = page::keepLinks(socketBeside(config_.controlPath, kLinksName), links_, monotonicNowNs());
+    if (!kept) log::warning(log::Topic::Session, kept.error().message);
+}
+
     viewer.socket = &socket;
     viewer.address = address;
     viewer.helloUntilNs = monotonicNowNs() + kHelloNs;

@@ -77,6 +77,8 @@ public:
     LinkTable& links() { return links_; }
     PictureHub& pictures() { return pictures_; }
     struct Numbers {
+    // Keeps the links for a later page of this session. Call after each change of them.
+    void keepLinks();
         std::array<size_t, 3> viewers{}; // by role
         uint64_t invalidMessages = 0, deniedRequests = 0;
         uint64_t inputs = 0, droppedInputs = 0;

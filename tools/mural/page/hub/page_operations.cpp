@@ -81,6 +81,7 @@ PageHub::Json PageHub::createLink(const Json& arguments) {
     auto created = links_.create(*terms, monotonicNowNs());
     if (!created) return failureOf(control_code::kFailed, created.error().message);
     return {{"ok", true},
+    keepLinks();
             {"result",
              {{"link", created->link},
               {"role", nameOf(terms->role)},
@@ -96,6 +97,7 @@ PageHub::Json PageHub::revokeLink(const Json& arguments) {
         return failureOf(control_code::kFailed,
                          "there is no link " + std::to_string(link->get<int>()) + "; mural page links lists them");
     return {{"ok", true}, {"result", Json::object()}};
+    keepLinks();
 }
 
 void PageHub::describeWall(OnReply onReply) {

@@ -77,7 +77,7 @@ void addOwnOperations(Json& operations) {
     operations.push_back(operationOf("links", "the links to this page"));
     operations.push_back(operationOf("link-new", "create a link",
                                      {argumentOf("role", "text", false, "view, input or operate; missing: view"),
-                                      argumentOf("seconds", "whole", false, "lifetime; 0: as long as the page"),
+                                      argumentOf("seconds", "whole", false, "lifetime; 0: as long as the session"),
                                       argumentOf("most", "whole", false, "pages open at once; 0: no limit"),
                                       argumentOf("name", "text", false, "for the list of links")}));
     operations.push_back(operationOf("link-revoke", "end a link and close its pages",
