@@ -20,6 +20,7 @@ from page_session import SIZE, Page, draws, ended, session  # noqa: E402
 from harness import cases  # noqa: E402
 from harness.control import result_of  # noqa: E402
 from page_client import WebSocket, request  # noqa: E402
+from page_schema import message_errors, metrics_errors  # noqa: E402
 
 JPEG = b"\xff\xd8\xff"
 DENIED = 4401
@@ -163,6 +164,16 @@ def operations(context):
             if not code["ok"]:
                 wrong.append("restart: %s" % code)
         return ended(context, run, wrong)
+            for topic in ("events", "log", "outputs"):
+                viewer.ask("subscribe", {"topic": topic, "interval": 100}, 7)
+                if viewer.receive(lambda m: m.get("topic") == topic, 15) is None:
+                    wrong.append("no message of the topic %s" % topic)
+            viewer.send({"ping": 1.5})
+            viewer.receive(lambda m: "pong" in m)
+            viewer.send({"input": {"seq": 1, "kind": "move", "x": 0.5, "y": 0.5}})
+            viewer.ask("links", number=8)
+            wrong += message_errors(viewer.heard, viewer.said)
+            wrong += metrics_errors(request(page.url, "/metrics", page.token)[2].decode())
 
 
 @cases.case

@@ -43,6 +43,8 @@ class WebSocket:
         self.messages = []
         self.socket = socket.create_connection((name, int(port)), PATIENCE_SECONDS)
         if scheme == "https":
+        self.cursors = []  # that came between pictures
+        self.heard, self.said = [], []  # all text messages, from the page and to it
             self.socket = ssl._create_unverified_context().wrap_socket(self.socket)
         lines = ["GET /ws HTTP/1.1", "Host: " + (host or name + ":" + port), "Upgrade: websocket", "Connection: Upgrade",
                  "Sec-WebSocket-Version: 13", "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode()]
@@ -78,6 +80,7 @@ class WebSocket:
 
     def _take_frames(self):
         while len(self.received) >= 2:
+        self.said.append(message)
             isLast, code, size, at = self.received[0] & 0x80, self.received[0] & 15, self.received[1] & 127, 2
             if size >= 126:
                 width = 2 if size == 126 else 8
@@ -97,6 +100,8 @@ class WebSocket:
             elif code == 8:
                 self.closed = (int.from_bytes(payload[:2], "big"), payload[2:].decode())
             elif code == 9:
+                if self.kind == 1:
+                    self.heard.append(self.messages[-1])
                 self.frame(10, payload)
 
     def receive(self, accept, seconds=PATIENCE_SECONDS):
