@@ -23,6 +23,7 @@ from page_client import WebSocket, request  # noqa: E402
 from page_schema import message_errors, metrics_errors  # noqa: E402
 
 JPEG = b"\xff\xd8\xff"
+PNG = b"\x89PNG"
 DENIED = 4401
 TOO_MANY = 4429
 SESSION_ENDED = 4410
@@ -163,7 +164,6 @@ def operations(context):
             code = viewer.ask("restart-node", {"node": 1}, 6)
             if not code["ok"]:
                 wrong.append("restart: %s" % code)
-        return ended(context, run, wrong)
             for topic in ("events", "log", "outputs"):
                 viewer.ask("subscribe", {"topic": topic, "interval": 100}, 7)
                 if viewer.receive(lambda m: m.get("topic") == topic, 15) is None:
@@ -174,6 +174,7 @@ def operations(context):
             viewer.ask("links", number=8)
             wrong += message_errors(viewer.heard, viewer.said)
             wrong += metrics_errors(request(page.url, "/metrics", page.token)[2].decode())
+        return ended(context, run, wrong)
 
 
 @cases.case
@@ -195,7 +196,7 @@ def live_pictures(context):
                     wrong.append("%s of %s: %s, frames %s" % (name, of, reply, frames))
                     continue
                 header, payload = found[-1]
-                if (header["pictureWidth"], header["pictureHeight"]) != size or header["stream"] != stream or not payload.startswith(JPEG):
+                if (header["pictureWidth"], header["pictureHeight"]) != size or header["stream"] != stream or not payload.startswith(PNG if header["flags"] & 4 else JPEG):
                     wrong.append("%s of %s: %s" % (name, of, header))
             nodes = [pid for pid in run.processes(cases.NODE)]
             for pid in nodes:
@@ -495,6 +496,9 @@ def ends(context):
             viewer.hello(page.token)
             viewer.ask("preview", {"class": "full"})
             viewer.pictures(2)
+            _, shared = page.link("view", name="class")
+            revoked, ended_token = page.link("view")
+            request(page.url, "/api/v1/links/%d" % revoked, page.token, "DELETE")
             page.process.kill()
             page.process.wait()
         frames = [result_of(context, run, "status")["frames"]]
@@ -507,9 +511,11 @@ def ends(context):
             viewer.ask("preview", {"class": "preview"})
             if not viewer.pictures(1):
                 wrong.append("no pictures of a second page")
-            _, shared = page.link("view", name="class")
-            revoked, ended_token = page.link("view")
-            request(page.url, "/api/v1/links/%d" % revoked, page.token, "DELETE")
+            with WebSocket(page.url) as other:
+                if (other.hello(shared) or {}).get("role") != "view":
+                    wrong.append("a link does not outlive its page")
+            if request(page.url, "/api/v1/state", ended_token)[0] != 401:
+                wrong.append("a revoked link lives again")
             os.kill(state["headPid"], signal.SIGKILL)
             event = viewer.receive(lambda m: isinstance(m, dict) and m.get("topic") == "events" and m["data"][0]["event"] == "session-ended", 3)
             if event is None or viewer.close_code(5) != SESSION_ENDED:
@@ -521,8 +527,3 @@ def ends(context):
 
 if __name__ == "__main__":
     sys.exit(cases.main(__doc__))
-            with WebSocket(page.url) as other:
-                if (other.hello(shared) or {}).get("role") != "view":
-                    wrong.append("a link does not outlive its page")
-            if request(page.url, "/api/v1/state", ended_token)[0] != 401:
-                wrong.append("a revoked link lives again")

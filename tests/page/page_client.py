@@ -13,6 +13,8 @@ import urllib.request
 
 PATIENCE_SECONDS = 20
 PART = struct.Struct("<BBHIQIHHHHHHI")
+JPEG_PART, H264_PART, CURSOR_PART, PNG_PART = 1, 2, 3, 4
+KEY, STILL, HIDDEN = 1, 4, 8
 PART_NAMES = ("version", "kind", "flags", "stream", "frame", "lastInput", "x", "y", "w", "h", "pictureWidth", "pictureHeight", "bytes")
 
 
@@ -41,10 +43,10 @@ class WebSocket:
         self.received = b""
         self.kind, self.fragments = 1, b""  # of the message that is being received
         self.messages = []
-        self.socket = socket.create_connection((name, int(port)), PATIENCE_SECONDS)
-        if scheme == "https":
         self.cursors = []  # that came between pictures
         self.heard, self.said = [], []  # all text messages, from the page and to it
+        self.socket = socket.create_connection((name, int(port)), PATIENCE_SECONDS)
+        if scheme == "https":
             self.socket = ssl._create_unverified_context().wrap_socket(self.socket)
         lines = ["GET /ws HTTP/1.1", "Host: " + (host or name + ":" + port), "Upgrade: websocket", "Connection: Upgrade",
                  "Sec-WebSocket-Version: 13", "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode()]
@@ -76,11 +78,11 @@ class WebSocket:
             self.closed = self.closed or (0, "lost")
 
     def send(self, message):
+        self.said.append(message)
         self.frame(1, (message if isinstance(message, str) else json.dumps(message)).encode())
 
     def _take_frames(self):
         while len(self.received) >= 2:
-        self.said.append(message)
             isLast, code, size, at = self.received[0] & 0x80, self.received[0] & 15, self.received[1] & 127, 2
             if size >= 126:
                 width = 2 if size == 126 else 8
@@ -96,12 +98,12 @@ class WebSocket:
                 if not isLast:
                     continue
                 self.messages.append(json.loads(self.fragments) if self.kind == 1 else parts_of(self.fragments))
+                if self.kind == 1:
+                    self.heard.append(self.messages[-1])
                 self.fragments = b""
             elif code == 8:
                 self.closed = (int.from_bytes(payload[:2], "big"), payload[2:].decode())
             elif code == 9:
-                if self.kind == 1:
-                    self.heard.append(self.messages[-1])
                 self.frame(10, payload)
 
     def receive(self, accept, seconds=PATIENCE_SECONDS):
@@ -133,8 +135,8 @@ class WebSocket:
         self.receive(lambda _: False, seconds)
         return self.closed and self.closed[0]
 
-    def hello(self, token, name="test"):
-        self.send({"hello": {"token": token, "name": name, "canUse": {"h264": False}, "px": [1280, 720]}})
+    def hello(self, token, name="test", h264=False):
+        self.send({"hello": {"token": token, "name": name, "canUse": {"h264": h264}, "px": [1280, 720]}})
         message = self.receive(lambda m: "welcome" in m)
         return message and message["welcome"]
 
@@ -151,6 +153,9 @@ class WebSocket:
             parts = self.receive(lambda m: isinstance(m, list), deadline - time.monotonic())
             if parts is None:
                 break
+            if parts[-1][0]["kind"] == CURSOR_PART:
+                self.cursors.append(parts[-1])
+                continue
             found.append(parts[-1])
             self.send({"ack": {"frame": parts[-1][0]["frame"], "shownMs": 1.0}})
         return found

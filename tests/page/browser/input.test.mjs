@@ -140,3 +140,34 @@ test('the time from input to picture is shown', () => inControl({}, async ({ moc
     await page.waitForSelector('.toolbar:has-text("input to picture")', { timeout: 5000 });
     assert.ok(mock.inputs.length >= 10);
 }));
+
+const kShape = Buffer.from('iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==', 'base64');
+const cursorBox = page => page.$eval('.program-cursor', canvas => ({ hidden: canvas.hidden, ...canvas.getBoundingClientRect().toJSON() }));
+
+test('the pointer has the shape of the program, and follows the hand at once', () => inControl({}, async ({ mock, page }) => {
+    const box = await boxOf(page);
+    await page.mouse.move(box.x + 200, box.y + 100);
+    mock.sendCursor(kShape, [0.9, 0.9], [3, 5]);
+    await page.waitForSelector('.surface.has-cursor');
+    await page.mouse.move(box.x + 201, box.y + 101);
+    const own = await cursorBox(page);
+    assert.ok(Math.abs(own.x - (box.x + 198)) <= 1 && Math.abs(own.y - (box.y + 96)) <= 1, JSON.stringify([own, box]));
+    assert.equal(await page.$eval('.surface', element => getComputedStyle(element).cursor), 'none');
+}));
+
+test('viewers see the pointer where the program has it', async () => {
+    const mock = await startMock();
+    const { page, context, faults } = await open(browser, mock, { view: 'use', token: 'view-token' });
+    await waitForPicture(page, '.use .picture');
+    assert.equal((await cursorBox(page)).hidden, true);
+    mock.sendCursor(kShape, [0.5, 0.25], [3, 5]);
+    mock.sendCursor(Buffer.alloc(0), [0.25, 0.5], [3, 5]);
+    const box = await boxOf(page);
+    await until(async () => Math.abs((await cursorBox(page)).x - (box.x + box.width / 4 - 3)) <= 1, 'the place of the pointer');
+    assert.ok(Math.abs((await cursorBox(page)).y - (box.y + box.height / 2 - 5)) <= 1);
+    mock.sendCursor(Buffer.alloc(0), [0.25, 0.5], [3, 5], true);
+    await until(async () => (await cursorBox(page)).hidden, 'the end of the pointer in the window');
+    assert.deepEqual(faults, []);
+    await context.close();
+    await mock.close();
+});

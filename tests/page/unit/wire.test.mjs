@@ -27,7 +27,7 @@ test('a picture message has all of its parts', () => {
     const { payload, ...rest } = parts[0];
     assert.deepEqual([...payload], [1, 2, 3]);
     assert.deepEqual(rest, {
-        kind: 2, isKeyFrame: true, isLast: true, isStill: false, stream: 5, frame: 2 ** 40 + 7, lastInput: 99,
+        kind: 2, isKeyFrame: true, isLast: true, isStill: false, isHidden: false, stream: 5, frame: 2 ** 40 + 7, lastInput: 99,
         x: 10, y: 20, width: 30, height: 40, pictureWidth: 640, pictureHeight: 360,
     });
 });

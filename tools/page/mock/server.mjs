@@ -196,6 +196,12 @@ export class Mock {
         }
     }
 
+    // Shows the pointer of the program at a place in fractions; an empty shape keeps the earlier one.
+    sendCursor(shape, place, hot = [0, 0], isHidden = false) {
+        const at = place.map(value => Math.round(value * 65535));
+        for (const { web } of this.clients) web.send(part(3, isHidden ? 8 : 0, 0, 0, 0, [...at, ...hot], [1, 1], shape));
+    }
+
     jpegFrame(client, stream, size) {
         const tiles = this.tiles[(this.scene.frame >> 2) % this.tiles.length];
         const [w, h] = [size[0] / 2, size[1] / 2];

@@ -26,7 +26,7 @@ constexpr int64_t kAliveEveryNs = 2 * kNsPerS, kAliveNs = 6 * kNsPerS;
 constexpr int64_t kFramesEveryNs = 250 * kNsPerMs;
 constexpr int64_t kOutputsEveryNs = kNsPerS, kWallEveryNs = 5 * kNsPerS;
 constexpr int64_t kProofTimeNs = 200 * kNsPerMs; // within which the nodes usually prove their outputs
-constexpr size_t kMaxWaiting = 64; // requests of a viewer without a reply
+constexpr size_t kMaxWaiting = 64;               // requests of a viewer without a reply
 constexpr size_t kMaxLogLines = 1000;
 constexpr const char* kLinksName = "page-links"; // removed by nodes/launch/session_socket.cpp
 
@@ -60,6 +60,9 @@ PageHub::PageHub(boost::asio::io_context& io, HubConfig config, std::function<vo
       input_(std::make_unique<ProgramInput>([&io, this](int viewer, uint32_t number) {
           boost::asio::post(io, [this, viewer, number] { pictures_.inputReached(viewer, number); });
       })),
+      cursor_(std::make_unique<CursorWatch>([&io, this](const CursorState& state) {
+          boost::asio::post(io, [this, state] { pictures_.setCursor(state); });
+      })),
       timer_(io) {}
 
 PageHub::~PageHub() {
@@ -68,11 +71,11 @@ PageHub::~PageHub() {
 }
 
 void PageHub::begin() {
+    if (!restoreLinks(socketBeside(config_.controlPath, kLinksName), links_, monotonicNowNs()))
+        log::warning(log::Topic::Session, "the links of an earlier page are unreadable, and ended");
     repliedAtNs_ = monotonicNowNs();
     quick_->begin([this](const Json& message) { takeMessage(message); }, [this] { end(); });
     slow_->begin([](const Json&) {}, [this] { end(); });
-    if (!restoreLinks(socketBeside(config_.controlPath, kLinksName), links_, monotonicNowNs()))
-        log::warning(log::Topic::Session, "the links of an earlier page are unreadable, and ended");
     tick();
 }
 
@@ -98,6 +101,7 @@ void PageHub::tick() {
     subscribeToHead();
     fetchFrames(nowNs);
     fetchOutputs(nowNs);
+    watchCursor(nowNs);
     if (pictures_.isWanted()) pictures_.tick(nowNs);
     fan_.flush(nowNs, [this](int viewer, const Json& message) { send(viewer, message); });
     if (nowNs - askedAtNs_ >= kAliveEveryNs) {
@@ -114,15 +118,15 @@ bool PageHub::isHeadAlive() const { return !hasEnded_ && monotonicNowNs() - repl
 
 // ---- viewers
 
-int PageHub::join(ViewerSocket& socket, const std::string& address) {
-    if (viewers_.size() >= kMaxViewers || hasEnded_) return 0;
-    const int number = ++lastViewer_;
-    Viewer& viewer = viewers_[number];
 void PageHub::keepLinks() {
     const auto kept = page::keepLinks(socketBeside(config_.controlPath, kLinksName), links_, monotonicNowNs());
     if (!kept) log::warning(log::Topic::Session, kept.error().message);
 }
 
+int PageHub::join(ViewerSocket& socket, const std::string& address) {
+    if (viewers_.size() >= kMaxViewers || hasEnded_) return 0;
+    const int number = ++lastViewer_;
+    Viewer& viewer = viewers_[number];
     viewer.socket = &socket;
     viewer.address = address;
     viewer.helloUntilNs = monotonicNowNs() + kHelloNs;
@@ -188,6 +192,7 @@ void PageHub::take(int number, const HelloMessage& hello) {
         return closeViewer(number, kCloseTooMany, "as many pages are open as this link permits");
     viewer.isKnown = true;
     viewer.link = found.link;
+    viewer.decodesVideo = hello.decodesH264;
     viewer.name = hello.name.empty() ? found.link.name : hello.name;
     log::info(log::Topic::Session, "viewer ", number, " (", nameOf(found.link.role), ") from ", viewer.address);
     send(number, {{"welcome",

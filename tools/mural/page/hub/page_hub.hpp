@@ -25,12 +25,14 @@
 #include "tools/mural/page/hub/topic_fan.hpp"
 #include "tools/mural/page/hub/viewer_socket.hpp"
 #include "tools/mural/page/input/input_lease.hpp"
+#include "tools/mural/page/input/program_display.hpp"
 #include "tools/mural/page/pictures/picture_hub.hpp"
 #include "tools/mural/page/protocol/client_message.hpp"
 #include "tools/mural/page/protocol/rate_limit.hpp"
 
 namespace mural::page {
 
+class CursorWatch;
 class ProgramInput;
 
 inline constexpr size_t kMaxViewers = 64;
@@ -75,10 +77,10 @@ public:
     void askHead(const std::string& operation, const Json& arguments, OnReply onReply);
 
     LinkTable& links() { return links_; }
-    PictureHub& pictures() { return pictures_; }
-    struct Numbers {
     // Keeps the links for a later page of this session. Call after each change of them.
     void keepLinks();
+    PictureHub& pictures() { return pictures_; }
+    struct Numbers {
         std::array<size_t, 3> viewers{}; // by role
         uint64_t invalidMessages = 0, deniedRequests = 0;
         uint64_t inputs = 0, droppedInputs = 0;
@@ -98,6 +100,7 @@ private:
         bool isKnown = false; // has sent a hello
         LinkTable::Known link;
         std::string name;
+        bool decodesVideo = false;
         int64_t helloUntilNs = 0;
         RateLimit requests{20}, inputs{500};
         size_t waiting = 0; // requests without a reply
@@ -126,6 +129,7 @@ private:
     // Performs operations of the page. Returns false for those of the head.
     bool ofPage(const std::string& operation, const Json& arguments, const OnReply& onReply);
     void findProgram(int64_t nowNs);
+    void watchCursor(int64_t nowNs);
     void takeProgram(const Json& program);
     Json takeInput(int viewer, const Json& arguments);
     Json releaseInput(int viewer, const Json& arguments);
@@ -149,7 +153,9 @@ private:
     PictureHub pictures_;
     InputLease lease_;
     std::unique_ptr<ProgramInput> input_;
-    int knownHolder_ = 0; // announced to the viewers
+    std::unique_ptr<CursorWatch> cursor_;
+    std::optional<ProgramDisplay> display_; // of the program; nullopt: unknown, or of a user
+    int knownHolder_ = 0;                   // announced to the viewers
     int64_t programAskedNs_ = 0;
     std::string inputProblem_; // why the program gets no input; empty: it gets it
     uint64_t inputs_ = 0, droppedInputs_ = 0;
@@ -160,7 +166,7 @@ private:
     uint64_t nextFrame_ = 0;                // of the timeline; 0: nobody subscribes
     int64_t framesAtNs_ = 0;
     bool isFetchingFrames_ = false;
-    Json wall_;                               // latest description, of the topic `outputs`; null: none
+    Json wall_; // latest description, of the topic `outputs`; null: none
     int64_t wallAtNs_ = 0, outputsAtNs_ = 0;
     bool isFetchingOutputs_ = false, isProofDue_ = false;
     int64_t askedAtNs_ = 0, repliedAtNs_ = 0; // of the check that the head is alive

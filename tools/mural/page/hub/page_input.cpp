@@ -7,6 +7,7 @@
 #include "nodes/head/control/control_operations.hpp"
 #include "tools/mural/page/hub/page_hub.hpp"
 #include "tools/mural/page/hub/page_replies.hpp"
+#include "tools/mural/page/input/cursor_watch.hpp"
 #include "tools/mural/page/input/program_input.hpp"
 
 namespace mural::page {
@@ -41,7 +42,7 @@ void PageHub::take(int number, const InputEvent& event) {
     changeHolder();
 }
 
-// Asks the head for the program's window now and then while input comes.
+// Asks the head for the program's window now and then, while input comes or somebody watches.
 void PageHub::findProgram(int64_t nowNs) {
     if (programAskedNs_ != 0 && nowNs - programAskedNs_ < kProgramEveryNs) return;
     programAskedNs_ = nowNs;
@@ -63,10 +64,17 @@ void PageHub::takeProgram(const Json& program) {
                   "pointer of that user";
     else
         input_->use(*display);
+    display_ = problem.empty() ? std::optional(*display) : std::nullopt;
     if (problem.empty()) problem = input_->problem();
-    if (!problem.empty() && problem != inputProblem_)
+    if (!problem.empty() && problem != inputProblem_ && lease_.holder() != 0)
         log::warning(log::Topic::Session, "no input reaches the program: ", problem);
     inputProblem_ = std::move(problem);
+}
+
+void PageHub::watchCursor(int64_t nowNs) {
+    const bool isWatched = pictures_.isWallWatched();
+    if (isWatched) findProgram(nowNs);
+    cursor_->watch(isWatched ? display_ : std::nullopt);
 }
 
 PageHub::Json PageHub::takeInput(int number, const Json& arguments) {

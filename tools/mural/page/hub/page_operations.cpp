@@ -54,7 +54,8 @@ std::optional<PageHub::Json> PageHub::ofViewer(int number, const RequestMessage&
     if (request.operation == "subscribe") return replyOf(fan_.subscribe(number, request.arguments, nowNs));
     if (request.operation == "unsubscribe") return replyOf(fan_.unsubscribe(number, request.arguments));
     if (request.operation == "preview")
-        return replyOf(pictures_.preview(number, *viewers_.at(number).socket, request.arguments));
+        return replyOf(pictures_.preview(number, *viewers_.at(number).socket, viewers_.at(number).decodesVideo,
+                                         request.arguments));
     if (request.operation == "input-take") return takeInput(number, request.arguments);
     if (request.operation == "input-release") return releaseInput(number, request.arguments);
     return std::nullopt;
@@ -80,8 +81,8 @@ PageHub::Json PageHub::createLink(const Json& arguments) {
     if (!terms) return failureOf(control_code::kBadArgument, terms.error().message);
     auto created = links_.create(*terms, monotonicNowNs());
     if (!created) return failureOf(control_code::kFailed, created.error().message);
-    return {{"ok", true},
     keepLinks();
+    return {{"ok", true},
             {"result",
              {{"link", created->link},
               {"role", nameOf(terms->role)},
@@ -96,8 +97,8 @@ PageHub::Json PageHub::revokeLink(const Json& arguments) {
     if (!links_.revoke(link->get<int>()))
         return failureOf(control_code::kFailed,
                          "there is no link " + std::to_string(link->get<int>()) + "; mural page links lists them");
-    return {{"ok", true}, {"result", Json::object()}};
     keepLinks();
+    return {{"ok", true}, {"result", Json::object()}};
 }
 
 void PageHub::describeWall(OnReply onReply) {

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <xcb/xtest.h>
 
 #include "common/base/clock.hpp"
@@ -18,39 +15,23 @@ constexpr int64_t kPlaceEveryNs = 200 * kNsPerMs; // the window may move
 constexpr size_t kMaxTyped = 4096;                // characters of a text
 constexpr Keysym kShift = 0xffe1, kShiftRight = 0xffe2, kLevel3 = 0xfe03;
 constexpr Keysym kFirstModifier = 0xffe3, kLastModifier = 0xffee; // Control to Hyper, without Shift
-constexpr const char* kCookieName = "MIT-MAGIC-COOKIE-1";
-
-struct FreeReply {
-    void operator()(void* reply) const { std::free(reply); }
-};
-template <class Reply> using Answer = std::unique_ptr<Reply, FreeReply>;
-
-xcb_connection_t* connectTo(const ProgramDisplay& display) {
-    if (display.authority.empty()) return xcb_connect(display.name.c_str(), nullptr);
-    std::ifstream file(display.authority, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    std::string cookie = cookieIn(bytes), name = kCookieName;
-    xcb_auth_info_t auth{static_cast<int>(name.size()), name.data(), static_cast<int>(cookie.size()), cookie.data()};
-    return xcb_connect_to_display_with_auth_info(display.name.c_str(), cookie.empty() ? nullptr : &auth, nullptr);
-}
 
 } // namespace
 
 Result<std::unique_ptr<DisplayInput>> DisplayInput::open(const ProgramDisplay& display) {
-    Connection connection(connectTo(display));
-    if (!connection || xcb_connection_has_error(connection.get()) != 0)
-        return Error{"the program's display " + display.name + " cannot be opened"};
+    XConnection connection = connectTo(display);
+    if (!connection) return Error{"the program's display " + display.name + " cannot be opened"};
     const Answer<xcb_test_get_version_reply_t> version(xcb_test_get_version_reply(
         connection.get(), xcb_test_get_version(connection.get(), XCB_TEST_MAJOR_VERSION, XCB_TEST_MINOR_VERSION),
         nullptr));
     if (!version) return Error{"the display " + display.name + " has no XTEST extension, so it takes no input"};
-    const xcb_window_t root = xcb_setup_roots_iterator(xcb_get_setup(connection.get())).data->root;
+    const xcb_window_t root = rootOf(connection.get());
     std::unique_ptr<DisplayInput> input(new DisplayInput(std::move(connection), root, display.window));
     if (!input->readKeyboard()) return Error{"the keyboard of the display " + display.name + " cannot be read"};
     return input;
 }
 
-DisplayInput::DisplayInput(Connection connection, xcb_window_t root, uint32_t window)
+DisplayInput::DisplayInput(XConnection connection, xcb_window_t root, uint32_t window)
     : connection_(std::move(connection)), root_(root), window_(window), isGiven_(window != 0) {}
 
 DisplayInput::~DisplayInput() {
@@ -79,34 +60,11 @@ void DisplayInput::fake(uint8_t type, uint8_t detail, int x, int y) {
                         static_cast<int16_t>(y), 0);
 }
 
-// Returns the largest window that is shown directly on the root.
-xcb_window_t DisplayInput::largestWindow() {
-    const Answer<xcb_query_tree_reply_t> tree(
-        xcb_query_tree_reply(connection_.get(), xcb_query_tree(connection_.get(), root_), nullptr));
-    xcb_window_t largest = root_;
-    int64_t area = 0;
-    for (int i = 0; tree && i < xcb_query_tree_children_length(tree.get()); ++i) {
-        const xcb_window_t window = xcb_query_tree_children(tree.get())[i];
-        const auto attributesCookie = xcb_get_window_attributes(connection_.get(), window);
-        const auto geometryCookie = xcb_get_geometry(connection_.get(), window);
-        const Answer<xcb_get_window_attributes_reply_t> attributes(
-            xcb_get_window_attributes_reply(connection_.get(), attributesCookie, nullptr));
-        const Answer<xcb_get_geometry_reply_t> geometry(
-            xcb_get_geometry_reply(connection_.get(), geometryCookie, nullptr));
-        if (!attributes || !geometry || attributes->map_state != XCB_MAP_STATE_VIEWABLE) continue;
-        const int64_t size = int64_t{geometry->width} * geometry->height;
-        if (size <= area) continue;
-        area = size;
-        largest = window;
-    }
-    return largest;
-}
-
 bool DisplayInput::placeWindow() {
     const int64_t nowNs = monotonicNowNs();
     if (width_ > 0 && nowNs - placedNs_ < kPlaceEveryNs) return true;
     placedNs_ = nowNs;
-    if (!isGiven_) window_ = largestWindow();
+    if (!isGiven_) window_ = largestWindow(connection_.get());
     const auto geometryCookie = xcb_get_geometry(connection_.get(), window_);
     const auto placeCookie = xcb_translate_coordinates(connection_.get(), window_, root_, 0, 0);
     const Answer<xcb_get_geometry_reply_t> geometry(xcb_get_geometry_reply(connection_.get(), geometryCookie, nullptr));

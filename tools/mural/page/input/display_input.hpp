@@ -15,6 +15,7 @@
 #include "common/base/result.hpp"
 #include "tools/mural/page/input/keyboard_map.hpp"
 #include "tools/mural/page/input/program_display.hpp"
+#include "tools/mural/page/input/x_display.hpp"
 #include "tools/mural/page/protocol/input_event.hpp"
 
 namespace mural::page {
@@ -36,17 +37,11 @@ public:
     [[nodiscard]] int fd() const;
 
 private:
-    struct Disconnect {
-        void operator()(xcb_connection_t* connection) const { xcb_disconnect(connection); }
-    };
-    using Connection = std::unique_ptr<xcb_connection_t, Disconnect>;
-
-    DisplayInput(Connection connection, xcb_window_t root, uint32_t window);
+    DisplayInput(XConnection connection, xcb_window_t root, uint32_t window);
     bool readKeyboard();
     void fake(uint8_t type, uint8_t detail, int x = 0, int y = 0);
     void moveTo(double x, double y);
     bool placeWindow();
-    xcb_window_t largestWindow();
     void button(uint8_t number, bool isDown);
     void wheel(double& sum, double add, uint8_t less, uint8_t more);
     void key(const InputEvent& event);
@@ -59,7 +54,7 @@ private:
     void restore(const std::vector<std::pair<uint8_t, bool>>& keys);
     [[nodiscard]] bool isHeld(Keysym keysym) const;
 
-    Connection connection_;
+    XConnection connection_;
     const xcb_window_t root_;
     xcb_window_t window_; // of the program; 0: the largest one
     const bool isGiven_;

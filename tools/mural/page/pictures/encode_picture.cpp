@@ -1,5 +1,6 @@
 #include "tools/mural/page/pictures/encode_picture.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <png.h>
 #include <turbojpeg.h>
@@ -19,6 +20,22 @@ struct FreeJpeg {
 void* compressor() {
     thread_local const std::unique_ptr<void, EndCompressor> handle(tjInitCompress());
     return handle.get();
+}
+
+// rows: from the top, without gaps.
+Result<std::string> pngOf(const std::string& rows, int width, int height, png_uint_32 format) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = static_cast<png_uint_32>(width);
+    image.height = static_cast<png_uint_32>(height);
+    image.format = format;
+    image.flags = PNG_IMAGE_FLAG_FAST;
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+    std::string bytes(size, '\0');
+    if (png_image_write_to_memory(&image, bytes.data(), &size, 0, rows.data(), 0, nullptr) == 0)
+        return Error{std::string("libpng cannot encode the picture: ") + image.message};
+    bytes.resize(size);
+    return bytes;
 }
 
 } // namespace
@@ -51,18 +68,21 @@ Result<std::string> encodePng(const Picture& picture) {
             *to++ = from[0];
         }
     }
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = static_cast<png_uint_32>(picture.width);
-    image.height = static_cast<png_uint_32>(picture.height);
-    image.format = PNG_FORMAT_RGB;
-    image.flags = PNG_IMAGE_FLAG_FAST;
-    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-    std::string bytes(size, '\0');
-    if (png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr) == 0)
-        return Error{std::string("libpng cannot encode the picture: ") + image.message};
-    bytes.resize(size);
-    return bytes;
+    return pngOf(rgb, picture.width, picture.height, PNG_FORMAT_RGB);
+}
+
+Result<std::string> encodeCursorPng(const uint32_t* pixels, int width, int height) {
+    constexpr uint32_t kByte = 0xff;
+    std::string rgba;
+    for (int i = 0; i < width * height; ++i) {
+        const uint32_t alpha = pixels[i] >> 24;
+        for (const int shift : {16, 8, 0}) {
+            const uint32_t colour = (pixels[i] >> shift) & kByte;
+            rgba.push_back(static_cast<char>(alpha == 0 ? 0 : std::min(kByte, (colour * kByte + alpha / 2) / alpha)));
+        }
+        rgba.push_back(static_cast<char>(alpha));
+    }
+    return pngOf(rgba, width, height, PNG_FORMAT_RGBA);
 }
 
 } // namespace mural::page

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -48,7 +49,7 @@ PictureHub::~PictureHub() {
     encoder_.join();
 }
 
-Result<Json> PictureHub::preview(int viewer, ViewerSocket& socket, const Json& arguments) {
+Result<Json> PictureHub::preview(int viewer, ViewerSocket& socket, bool decodesVideo, const Json& arguments) {
     for (const auto& [name, value] : arguments.items())
         if (name != "class" && name != "of") return Error{"unknown argument \"" + name.substr(0, 40) + "\""};
     auto wanted = classOf(arguments);
@@ -70,7 +71,9 @@ Result<Json> PictureHub::preview(int viewer, ViewerSocket& socket, const Json& a
     watcher = {};
     watcher.socket = &socket;
     watcher.key = key;
+    watcher.decodesVideo = decodesVideo;
     watcher.lastInput = lastInput;
+    sendCursor(watcher);
     tick(monotonicNowNs());
     return Json::object();
 }
@@ -83,6 +86,37 @@ void PictureHub::acknowledged(int viewer, uint64_t frame, int64_t nowNs) {
 }
 
 void PictureHub::forget(int viewer) { viewers_.erase(viewer); }
+
+bool PictureHub::isWallWatched() const {
+    return std::ranges::any_of(viewers_, [](const auto& viewer) {
+        return viewer.second.key.first == kWallPicture && viewer.second.key.second != PictureClass::Thumb;
+    });
+}
+
+void PictureHub::setCursor(const CursorState& cursor) {
+    cursor_ = cursor;
+    for (auto& [number, watcher] : viewers_) sendCursor(watcher);
+}
+
+// Sends the shape only if the viewer has another one.
+void PictureHub::sendCursor(Watcher& watcher) {
+    constexpr double kWhole = 65535;
+    if (!cursor_.shape || watcher.key.first != kWallPicture || watcher.key.second == PictureClass::Thumb) return;
+    const bool isNew = watcher.cursorShape != cursor_.shape;
+    PartHeader header;
+    header.kind = PartKind::Cursor;
+    header.flags = cursor_.isInside ? 0 : kHidden;
+    header.stream = kWallPicture;
+    header.x = static_cast<uint16_t>(std::lround(cursor_.x * kWhole));
+    header.y = static_cast<uint16_t>(std::lround(cursor_.y * kWhole));
+    header.width = static_cast<uint16_t>(cursor_.hotX);
+    header.height = static_cast<uint16_t>(cursor_.hotY);
+    header.pictureWidth = static_cast<uint16_t>(cursor_.width);
+    header.pictureHeight = static_cast<uint16_t>(cursor_.height);
+    const auto payload = isNew ? cursor_.shape : std::make_shared<const std::string>();
+    watcher.cursorShape = cursor_.shape;
+    watcher.socket->sendBinary(partHeaderBytes(header, payload->size()), payload);
+}
 
 void PictureHub::inputReached(int viewer, uint32_t number) {
     const auto found = viewers_.find(viewer);
@@ -101,18 +135,28 @@ void PictureHub::tick(int64_t nowNs) {
 
 void PictureHub::pump(const Key& key, Channel& channel, int64_t nowNs) {
     bool hasReady = false; // a viewer can take the next picture
+    bool wantsUnit = false, wantsKey = false;
     for (auto& [number, watcher] : viewers_) {
         if (watcher.key != key || !watcher.flow.canSend()) continue;
         const uint64_t frame = channel.latest.frame;
+        const bool isVideo = usesVideo(watcher, key, channel);
         if (channel.latest.picture == nullptr || watcher.sentFrame == frame) {
             hasReady = true;
             const bool rests = channel.latest.picture != nullptr && nowNs - channel.arrivedNs >= kRestNs;
-            if (rests && watcher.stillFrame != frame) deliver(watcher, key, channel, kStillQuality, true, nowNs);
+            const int coding = watcher.flow.quality() == ViewerFlow::kQualities.front() ? kLossless : kFine;
+            if (rests && watcher.stillFrame != frame) deliver(watcher, key, channel, coding, true, nowNs);
+            continue;
+        }
+        if (isVideo) {
+            wantsUnit = true;
+            wantsKey = wantsKey || watcher.needsKey;
+            hasReady = hasReady || channel.videoFrame == frame; // it waits for a key frame
             continue;
         }
         const int quality = std::max(1, limits_.quality * watcher.flow.quality() / 100);
         deliver(watcher, key, channel, quality, false, nowNs);
     }
+    if (wantsUnit) encodeVideo(key, channel, wantsKey, nowNs);
     if (hasReady) wishNext(key, channel, nowNs);
 }
 
@@ -125,6 +169,7 @@ bool PictureHub::deliver(Watcher& watcher, const Key& key, Channel& channel, int
     }
     if (found->second == nullptr) return false; // in progress
     PartHeader header;
+    header.kind = quality == kLossless ? PartKind::Png : PartKind::Jpeg;
     header.flags = static_cast<uint16_t>(kKeyFrame | kLastOfFrame | (isStill ? kStill : 0));
     header.stream = key.first;
     header.frame = channel.latest.frame;
@@ -133,10 +178,14 @@ bool PictureHub::deliver(Watcher& watcher, const Key& key, Channel& channel, int
     header.pictureHeight = header.height = static_cast<uint16_t>(channel.latest.picture->height());
     send(watcher, channel, partHeaderBytes(header, found->second->size()), found->second, nowNs);
     if (isStill) watcher.stillFrame = header.frame;
+    count(key, found->second->size());
+    return true;
+}
+
+void PictureHub::count(const Key& key, size_t bytes) {
     Totals& totals = totals_[static_cast<size_t>(key.second)];
     ++totals.sent;
-    totals.bytes += kPartHeaderBytes + found->second->size();
-    return true;
+    totals.bytes += kPartHeaderBytes + bytes;
 }
 
 void PictureHub::send(Watcher& watcher, const Channel& channel, const std::string& header, const Encoded& bytes,
@@ -178,10 +227,11 @@ void PictureHub::arrived(const Key& key, FeedPicture picture) {
 void PictureHub::encode(const Key& key, Channel& channel, int quality) {
     channel.encoded[quality] = nullptr;
     ++totals_[static_cast<size_t>(key.second)].encodes;
-    const bool isStill = quality == kStillQuality;
-    auto task = [this, key, quality, isStill, latest = channel.latest, alive = std::weak_ptr<int>(alive_)] {
-        auto bytes = encodeJpeg(latest.picture->view(), isStill ? kBestQuality : quality,
-                                isStill ? ChromaOf::All : ChromaOf::Half);
+    auto task = [this, key, quality, latest = channel.latest, alive = std::weak_ptr<int>(alive_)] {
+        const Picture picture = latest.picture->view();
+        auto bytes = quality == kLossless ? encodePng(picture)
+                     : quality == kFine   ? encodeJpeg(picture, kBestQuality, ChromaOf::All)
+                                          : encodeJpeg(picture, quality, ChromaOf::Half);
         if (!bytes) return log::warning(log::Topic::Picture, bytes.error().message);
         auto shared = std::make_shared<const std::string>(std::move(*bytes));
         boost::asio::post(io_, [this, key, quality, alive, frame = latest.frame, shared = std::move(shared)] {

@@ -1,6 +1,6 @@
 // Pictures for all viewers. The hub requests each class of each source while somebody looks, and encodes it once per
-// quality. The flow control of each viewer decides when it is sent. Used by the thread of its io_context; encoding has
-// a thread of its own.
+// coding: JPEG by quality, PNG of pictures that rest, and one H.264 stream. The flow control of each viewer decides
+// when it is sent. Used by the thread of its io_context; encoding has a thread of its own.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,10 @@
 
 #include "common/base/result.hpp"
 #include "tools/mural/page/hub/viewer_socket.hpp"
+#include "tools/mural/page/input/cursor_watch.hpp"
 #include "tools/mural/page/pictures/picture_class.hpp"
 #include "tools/mural/page/pictures/picture_feed.hpp"
+#include "tools/mural/page/pictures/video_encoder.hpp"
 #include "tools/mural/page/pictures/viewer_flow.hpp"
 #include "tools/mural/page/protocol/picture_part.hpp"
 
@@ -27,6 +29,8 @@ class PictureHub {
 public:
     // A class of pictures whose viewers have seen no later one for this time gets the still.
     static constexpr int64_t kRestNs = 400'000'000;
+    // Key frames of a stream are large, so viewers that need one share it.
+    static constexpr int64_t kKeyEveryNs = 1'000'000'000;
 
     struct Snapshot {
         int maxWidth = 0;
@@ -44,9 +48,14 @@ public:
     ~PictureHub();
 
     // Performs the operation `preview`. Returns an empty object. Errors: invalid arguments; the head gives no pictures.
-    Result<nlohmann::json> preview(int viewer, ViewerSocket& socket, const nlohmann::json& arguments);
+    // decodesVideo: the viewer gets H.264, beginning with a key frame.
+    Result<nlohmann::json> preview(int viewer, ViewerSocket& socket, bool decodesVideo,
+                                   const nlohmann::json& arguments);
     void acknowledged(int viewer, uint64_t frame, int64_t nowNs);
     void forget(int viewer);
+    // The pointer of the program's display, for viewers of the wall.
+    void setCursor(const CursorState& cursor);
+    [[nodiscard]] bool isWallWatched() const;
     // The program has got input of this viewer up to this number.
     void inputReached(int viewer, uint32_t number);
 
@@ -64,7 +73,8 @@ public:
 private:
     using Key = std::pair<uint32_t, PictureClass>; // source (PictureWish), class
     using Encoded = std::shared_ptr<const std::string>;
-    static constexpr int kStillQuality = 1000; // key of the still in Channel::encoded
+    // Keys of Channel::encoded beside the qualities of JPEG: stills for viewers whose link is slow, and for all others.
+    static constexpr int kFine = 1000, kLossless = 1001;
 
     // Pictures of one class of one source.
     struct Channel {
@@ -72,12 +82,18 @@ private:
         int64_t wishedNs = 0; // the last wish
         FeedPicture latest;
         int64_t arrivedNs = 0;
-        std::map<int, Encoded> encoded; // of the latest picture, by quality; null: in progress
+        std::map<int, Encoded> encoded;      // of the latest picture, by quality; null: in progress
+        std::shared_ptr<VideoEncoder> video; // null: no viewer decodes it. Used by the encoder's thread
+        bool hasVideoFailed = false, isEncodingVideo = false;
+        uint64_t videoFrame = 0; // the latest one that the encoder has got
+        int64_t keyNs = 0;       // the latest key frame
     };
     struct Watcher {
         ViewerSocket* socket = nullptr;
         Key key;
         ViewerFlow flow;
+        bool decodesVideo = false, needsKey = true;
+        std::shared_ptr<const std::string> cursorShape; // that it has
         uint64_t sentFrame = 0, stillFrame = 0;
         uint32_t lastInput = 0;
     };
@@ -88,6 +104,12 @@ private:
     void encode(const Key& key, Channel& channel, int quality);
     void send(Watcher& watcher, const Channel& channel, const std::string& header, const Encoded& bytes, int64_t nowNs);
     bool deliver(Watcher& watcher, const Key& key, Channel& channel, int quality, bool isStill, int64_t nowNs);
+    // H.264 (video_stream.cpp)
+    static bool usesVideo(const Watcher& watcher, const Key& key, const Channel& channel);
+    void encodeVideo(const Key& key, Channel& channel, bool wantsKey, int64_t nowNs);
+    void takeUnit(const Key& key, uint64_t frame, Result<VideoUnit> unit);
+    void count(const Key& key, size_t bytes);
+    void sendCursor(Watcher& watcher);
 
     boost::asio::io_context& io_;
     const std::string path_;
@@ -96,6 +118,7 @@ private:
     std::map<Key, Channel> channels_;
     std::array<Totals, kPictureClasses> totals_{};
     int wallWidth_ = 0, wallHeight_ = 0;
+    CursorState cursor_;
     std::shared_ptr<int> alive_ = std::make_shared<int>(0); // expires with this object, for tasks of the encoder
     boost::asio::thread_pool encoder_{1};
 };

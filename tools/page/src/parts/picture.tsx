@@ -11,7 +11,6 @@ interface Props {
     label: string;
     // Part of the picture, as fractions; missing: the whole picture.
     part?: Rect;
-    hasCursor?: boolean;
     isPreviewOnly?: boolean;
     // Pixels of the canvas are those of the picture.
     isOneToOne?: boolean;
@@ -21,7 +20,7 @@ interface Props {
 const kMostPixels = 4096;
 let isFirst = true;
 
-export function Picture({ hub, of, label, part, hasCursor, isPreviewOnly, isOneToOne, onSize }: Props) {
+export function Picture({ hub, of, label, part, isPreviewOnly, isOneToOne, onSize }: Props) {
     const ref = useRef<HTMLCanvasElement>(null);
     const key = part ? part.join() : '';
     useEffect(() => {
@@ -43,11 +42,6 @@ export function Picture({ hub, of, label, part, hasCursor, isPreviewOnly, isOneT
             context.imageSmoothingQuality = 'high';
             context.drawImage(from, left * from.width, top * from.height, width * from.width, height * from.height,
                 0, 0, canvas.width, canvas.height);
-            const { cursor } = stream;
-            if (hasCursor && cursor) {
-                const scale = canvas.width / from.width;
-                context.drawImage(cursor.picture, cursor.x * scale, cursor.y * scale, cursor.picture.width, cursor.picture.height);
-            }
             canvas.dataset.frame = String(stream.frame);
             if (isFirst) performance.mark('mural-first-picture');
             isFirst = false;
@@ -81,7 +75,7 @@ export function Picture({ hub, of, label, part, hasCursor, isPreviewOnly, isOneT
             visible.disconnect();
             hub.want(view, of, 'off');
         };
-    }, [hub, of, key, hasCursor, isPreviewOnly, isOneToOne]);
+    }, [hub, of, key, isPreviewOnly, isOneToOne]);
     const role = label ? { role: 'img' as const, 'aria-label': label } : { 'aria-hidden': true };
     return <canvas ref={ref} class="picture" width="1" height="1" {...role} />;
 }

@@ -6,8 +6,13 @@ import { VideoPath } from './video_path.ts';
 
 export interface Cursor {
     picture: ImageBitmap;
+    // Place in the program's window, as fractions.
     x: number;
     y: number;
+    isHidden: boolean;
+    // Pixels of the picture.
+    hotX: number;
+    hotY: number;
 }
 
 export interface StreamEvents {
@@ -125,8 +130,12 @@ export class PictureStream {
             : Promise.resolve(this.cursor?.picture ?? null);
         this.tail = this.tail.then(async () => {
             const picture = await decoded;
-            if (this.cursor && this.cursor.picture !== picture) this.cursor.picture.close();
-            this.cursor = picture ? { picture, x: part.x, y: part.y } : null;
+            // A move that follows a shape may be decoded before it.
+            const shown = part.payload.length ? picture : this.cursor?.picture ?? picture;
+            if (this.cursor && this.cursor.picture !== shown) this.cursor.picture.close();
+            this.cursor = shown && {
+                picture: shown, x: part.x / 65535, y: part.y / 65535, isHidden: part.isHidden, hotX: part.width, hotY: part.height,
+            };
             this.announce();
         });
     }

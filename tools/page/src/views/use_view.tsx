@@ -3,6 +3,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { ms } from '../parts/format.ts';
 import { Picture } from '../parts/picture.tsx';
+import { ProgramCursor } from '../parts/program_cursor.tsx';
 import { useCell } from '../session/cell.ts';
 import { ProgramInput } from '../session/program_input.ts';
 import type { Session } from '../session/session.ts';
@@ -78,8 +79,9 @@ export function UseView({ session }: ViewProps) {
                 <div ref={surface} class={`surface ${hasControl ? 'active' : ''}`} style={oneToOneSize}
                     tabIndex={hasControl ? 0 : undefined} role={hasControl ? 'application' : undefined}
                     aria-label={hasControl ? 'Program. Shift F6 leaves it.' : undefined}>
-                    <Picture hub={session.pictures} of="wall" hasCursor label="Picture of the program" isOneToOne={isOneToOne}
+                    <Picture hub={session.pictures} of="wall" label="Picture of the program" isOneToOne={isOneToOne}
                         onSize={(w, h) => setSize([w, h])} />
+                    <ProgramCursor stream={stream} surface={surface} isOwn={hasControl} />
                 </div>
             </div>
             <p class="faint">

@@ -7,12 +7,14 @@ const kHeaderBytes = 36;
 const kKeyFrame = 1;
 const kLastOfFrame = 2;
 const kStill = 4;
+const kHidden = 8;
 
 export interface PicturePart {
     kind: number;
     isKeyFrame: boolean;
     isLast: boolean;
     isStill: boolean;
+    isHidden: boolean;
     stream: number;
     frame: number;
     lastInput: number;
@@ -40,6 +42,7 @@ export function parsePictureMessage(message: ArrayBuffer): PicturePart[] {
             isKeyFrame: (flags & kKeyFrame) !== 0,
             isLast: (flags & kLastOfFrame) !== 0,
             isStill: (flags & kStill) !== 0,
+            isHidden: (flags & kHidden) !== 0,
             stream: view.getUint32(at + 4, true),
             // Frame numbers stay below 2^53 for longer than any session.
             frame: view.getUint32(at + 8, true) + view.getUint32(at + 12, true) * 2 ** 32,
