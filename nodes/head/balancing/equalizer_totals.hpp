@@ -2,15 +2,25 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "common/geometry/viewport.hpp"
 
 namespace mural {
 
 // The parts among which an equalizer divides work. Frames: nodes draw whole frames in turn. Zooms: none; it changes the
 // zoom of all its nodes.
 enum class Division : uint8_t { Areas, Ranges, Frames, Zooms };
+
+struct NodeShare {
+    int node = 0;
+    double part = 0;                               // of the area, range or frames
+    std::optional<Viewport> area;                  // of the picture, for Division::Areas
+    std::optional<double> measuredMs, predictedMs; // per frame with this part (PartPrediction)
+};
 
 struct EqualizerTotals {
     std::string id;
@@ -27,7 +37,7 @@ struct EqualizerTotals {
     double framesPerSecond = 0; // highest rate of the program, for Division::Frames; 0: no limit
     double zoom = 0;            // announced zoom relative to the file, for Division::Zooms
     std::vector<std::pair<std::string, std::string>> parameters; // name and value
-    std::vector<std::pair<int, double>> nodes;                   // node and its part of the area, range or frames
+    std::vector<NodeShare> nodes;
 };
 
 } // namespace mural

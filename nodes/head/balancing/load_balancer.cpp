@@ -198,6 +198,10 @@ void LoadBalancer::advance(bool repeats) {
                                                           : areas.ofNodes[i] != areas_.ofNodes[i];
         };
         if (!repeats && !issues_.empty() && std::ranges::any_of(w.nodes, moved)) ++w.totals.moves;
+        if (hasAreas && w.totals.division == Division::Areas)
+            w.prediction.moved(w.nodes, areas.number + 1, areas_.ofNodes, areas.ofNodes);
+        if (hasRanges && w.totals.division == Division::Ranges)
+            w.prediction.moved(w.nodes, ranges.number + 1, ranges_.ofNodes, ranges.ofNodes);
     }
     if (hasAreas) {
         ++areas.number;
@@ -392,6 +396,8 @@ void LoadBalancer::countFrame(const FrameTimes::Frame& frame) {
         for (const int node : w.nodes) {
             const double busy = frame.busyNs[static_cast<size_t>(node)];
             if (busy < 0) continue;
+            const wire::FrameDoneMessage& done = frame.done[static_cast<size_t>(node)];
+            w.prediction.measured(node, w.totals.division == Division::Ranges ? done.shares : done.areas, busy);
             sum += busy;
             longest = std::max(longest, busy);
             ++alive;

@@ -18,6 +18,7 @@
 
 #include "balancer/planner/frame_planner.hpp"
 #include "nodes/head/balancing/equalizer_totals.hpp"
+#include "nodes/head/balancing/part_prediction.hpp"
 #include "nodes/head/balancing/program_frames.hpp"
 #include "nodes/head/frames/frame_times.hpp"
 #include "nodes/head/planning/node_plan.hpp"
@@ -83,7 +84,8 @@ private:
         std::vector<int> nodes;
         EqualizerTotals totals;
         std::deque<double> efficiencies; // of the latest frames
-        uint32_t drawn = 0;              // number of the assignment of the last frame
+        PartPrediction prediction;
+        uint32_t drawn = 0; // number of the assignment of the last frame
     };
 
     void resize();

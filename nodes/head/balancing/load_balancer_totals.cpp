@@ -10,6 +10,11 @@ namespace {
 double partOf(const Viewport& area) { return area.w * area.h; }
 double partOf(const Range& range) { return range.end - range.start; }
 
+std::optional<double> msOf(const std::optional<double>& ns) {
+    constexpr double kNsInMs = 1e6;
+    return ns ? std::optional(*ns / kNsInMs) : std::nullopt;
+}
+
 } // namespace
 
 void LoadBalancer::count(Watched& w) const {
@@ -30,10 +35,13 @@ void LoadBalancer::count(Watched& w) const {
         const double part = w.totals.division == Division::Frames   ? 1
                             : w.totals.division == Division::Ranges ? partOf(ranges_.ofNodes[i])
                                                                     : partOf(areas_.ofNodes[i]);
-        w.totals.nodes.emplace_back(node, part);
+        NodeShare share{node, part, std::nullopt, msOf(w.prediction.measuredNs(node)),
+                        msOf(w.prediction.predictedNs(node))};
+        if (w.totals.division == Division::Areas) share.area = areas_.ofNodes[i];
+        w.totals.nodes.push_back(share);
         whole += part;
     }
-    for (auto& [node, part] : w.totals.nodes) part = whole > 0 ? part / whole : 0;
+    for (NodeShare& share : w.totals.nodes) share.part = whole > 0 ? share.part / whole : 0;
 }
 
 Result<balance::Equalizer*> LoadBalancer::find(const std::string& name) const {

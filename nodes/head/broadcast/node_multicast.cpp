@@ -104,6 +104,16 @@ rsp::MemberId NodeMulticast::memberOf(int node) const {
     return rsp::kHost;
 }
 
+std::map<int, NodeMulticast::Losses> NodeMulticast::losses() const {
+    const rsp::GroupReport now = group_->report();
+    const std::lock_guard lock(mutex_);
+    std::map<int, Losses> result;
+    for (const rsp::GroupReport::Member& member : now.members)
+        if (const auto node = nodes_.find(member.id); node != nodes_.end())
+            result[node->second] = {member.state.lost, member.state.dropped};
+    return result;
+}
+
 void NodeMulticast::remove(int node, const std::string& why) {
     rsp::MemberId member = rsp::kHost;
     {

@@ -54,6 +54,12 @@ public:
     [[nodiscard]] std::vector<int> waitsFor() const;
     [[nodiscard]] std::string describe() const; // for --explain
     [[nodiscard]] rsp::GroupReport report() const { return group_->report(); }
+    // Datagrams of the stream that a member has lost, as it reports them. Others or the head repaired them.
+    struct Losses {
+        uint32_t lost = 0;    // in the network
+        uint32_t dropped = 0; // by its socket
+    };
+    [[nodiscard]] std::map<int, Losses> losses() const; // by node
 
 private:
     NodeMulticast(std::unique_ptr<rsp::Group> group, const rsp::GroupOptions& options);

@@ -467,6 +467,11 @@ SessionStatus HeadSession::status() {
         program.progress = frames_.progressOf(program.id);
         program.waitsForNodes = waitsFor(program);
     }
+    std::map<int, NodeMulticast::Losses> losses;
+    if (const NodeMulticast* const multicast = nodes_.multicast()) {
+        losses = multicast->losses();
+        result.multicast = multicast->report().sender;
+    }
     const std::lock_guard lock(mutex_);
     for (size_t i = 0; i < facts_.size(); ++i) {
         if (hasLeft(static_cast<int>(i))) continue;
@@ -482,6 +487,7 @@ SessionStatus HeadSession::status() {
         node.totals.pictureRawBytes = link.pictureRawBytes();
         node.returning = returns_->isRestarting(node.totals.node);
         node.isStopped = stopped_.contains(node.totals.node);
+        if (const auto lost = losses.find(node.totals.node); lost != losses.end()) node.losses = lost->second;
         node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);
         result.nodes.push_back(std::move(node));
     }

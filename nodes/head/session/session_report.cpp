@@ -103,12 +103,21 @@ const char* nameOf(Division division) {
     return "frames";
 }
 
+// The area is x, y, width and height from the upper left corner.
+Json shareJson(const NodeShare& share) {
+    Json json = {{"node", share.node}, {"part", share.part}};
+    if (share.area) json["area"] = {share.area->x, 1 - share.area->y - share.area->h, share.area->w, share.area->h};
+    json["measuredMs"] = share.measuredMs ? Json(*share.measuredMs) : Json();
+    json["predictedMs"] = share.predictedMs ? Json(*share.predictedMs) : Json();
+    return json;
+}
+
 Json equalizersJson(const std::vector<EqualizerTotals>& equalizers) {
     if (equalizers.empty()) return nullptr;
     Json list = Json::array();
     for (const EqualizerTotals& e : equalizers) {
         Json nodes = Json::array();
-        for (const auto& [node, part] : e.nodes) nodes.push_back({{"node", node}, {"part", part}});
+        for (const NodeShare& share : e.nodes) nodes.push_back(shareJson(share));
         Json parameters = Json::object();
         for (const auto& [name, value] : e.parameters) parameters[name] = value;
         list.push_back({{"name", e.id},

@@ -29,8 +29,19 @@ Json programJson(const ProgramStatus& program) {
     };
 }
 
+// Repairs serve the whole group, so no node has a number of its own.
+Json multicastJson(const std::optional<rsp::SenderCounters>& counters) {
+    if (!counters) return nullptr;
+    return {{"bytes", counters->bytes},
+            {"datagrams", counters->datagrams},
+            {"repairs", counters->resent},
+            {"parity", counters->rows}};
+}
+
 Json nodeJson(const NodeStatus& node) {
     return {
+        {"lost", node.losses ? Json(node.losses->lost) : Json()},
+        {"dropped", node.losses ? Json(node.losses->dropped) : Json()},
         {"node", node.totals.node},
         {"where", node.where},
         {"pid", node.pid},
@@ -72,6 +83,7 @@ Json statusOf(const SessionStatus& status) {
         {"recording", status.recording ? recordingJson(*status.recording) : Json()},
         {"delta", deltaJson(status.delta)},
         {"equalizers", equalizersJson(status.equalizers)},
+        {"multicast", multicastJson(status.multicast)},
         {"programs", programs},
         {"nodes", nodes},
     };

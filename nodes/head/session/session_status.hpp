@@ -8,6 +8,7 @@
 #include <sys/types.h>
 #include <vector>
 
+#include "nodes/head/broadcast/node_multicast.hpp"
 #include "nodes/head/capture/capture_memory.hpp"
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/session/session_report.hpp"
@@ -29,10 +30,11 @@ struct NodeStatus {
     std::string where; // "local", or the host
     int64_t pid = 0;
     std::string gl;
-    double silentSeconds = 0; // since its last message
-    std::string stream;       // transport of its packets: memory, TCP, multicast
-    bool returning = false;   // lost, and being restarted
-    bool isStopped = false;   // by an operator, until it is started again
+    double silentSeconds = 0;                                   // since its last message
+    std::string stream;                                         // transport of its packets: memory, TCP, multicast
+    bool returning = false;                                     // lost, and being restarted
+    bool isStopped = false;                                     // by an operator, until it is started again
+    std::optional<NodeMulticast::Losses> losses = std::nullopt; // of the multicast stream; empty: it has another one
 };
 
 struct SessionStatus {
@@ -50,6 +52,7 @@ struct SessionStatus {
     std::vector<EqualizerTotals> equalizers;
     std::vector<ProgramStatus> programs;
     std::vector<NodeStatus> nodes;
+    std::optional<rsp::SenderCounters> multicast; // of the head; empty: no node receives multicast
 };
 
 nlohmann::json statusOf(const SessionStatus& status);

@@ -18,7 +18,7 @@ after(async () => {
 
 // Text that shows that a view has its data.
 const kProofs = {
-    wall: 'lower.right', use: 'Take control', timeline: 'Slowest stage: replay on node 2', balance: 'Equal times', nodes: 'wänd-2', network: 'Repairs',
+    wall: 'lower.right', use: 'Take control', timeline: 'Slowest stage: replay on node 2', balance: 'Equal times', nodes: 'wänd-2', network: 'Multicast',
     program: 'glReadPixels', configuration: 'wall-2x2.eqc', record: 'no recording', log: 'was lost', links: 'New link',
 };
 

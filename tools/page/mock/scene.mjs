@@ -51,6 +51,7 @@ export class Scene {
         this.status.equalizers = json('equalizers.json').equalizers;
         this.status.equalizers[0].nodes.forEach((entry, i) => (entry.part = [0.24, 0.31, 0.19, 0.26][i]));
         this.status.tiles = '2x2';
+        this.status.multicast = { bytes: 41e6, datagrams: 29400, repairs: 31, parity: 64 };
         this.recordedFrames = json('frames.json');
         this.nextFrame = 1;
         Object.assign(this.status.programs[0], {
@@ -60,7 +61,7 @@ export class Scene {
         this.status.nodes.forEach((node, i) => {
             Object.assign(node, {
                 where: i < 2 ? 'wall1' : 'wänd-2', state: 'alive', stream: 'multicast', joins: 0, frames: this.frame,
-                pictureBytes: 4e8, pictureRawBytes: 5.1e9, silentSeconds: 0.02, repairs: 12 * i, lost: 5 * i, secondsToRejoin: 0, snapshotBytes: 0,
+                pictureBytes: 4e8, pictureRawBytes: 5.1e9, silentSeconds: 0.02, dropped: 0, lost: 5 * i, secondsToRejoin: 0, snapshotBytes: 0,
             });
         });
         this.addLog('info', 'session', 'the wall has 4 nodes on 2 hosts');
@@ -114,7 +115,7 @@ export class Scene {
             node.readbackSeconds += (0.9 * frames) / 1000;
             node.pictureBytes += frames * (41000 + 6000 * i);
             node.pictureRawBytes += frames * 921600;
-            node.repairs += this.frame % (97 + 13 * i) < frames ? 1 : 0;
+            node.lost += this.frame % (97 + 13 * i) < frames ? 1 : 0;
         });
         if (status.recording) {
             status.recording.frames += frames;

@@ -32,9 +32,9 @@ export function partsOf(equalizer: Equalizer, session: Session): Part[] {
     const known = times.filter(Number.isFinite);
     const mean = known.length ? known.reduce((sum, time) => sum + time, 0) / known.length : NaN;
     return equalizer.nodes.map((entry, i) => {
-        const own = (entry as unknown as Record<string, unknown>).predictedMs;
+        const { predictedMs: own, measuredMs } = entry as unknown as Record<string, unknown>;
         return {
-            node: entry.node, part: entry.part, replayMs: times[i]!,
+            node: entry.node, part: entry.part, replayMs: typeof measuredMs === 'number' ? measuredMs : times[i]!,
             predictedMs: typeof own === 'number' ? own : mean,
             isPredicted: typeof own === 'number',
             area: areaOf(entry as unknown as Record<string, unknown>),

@@ -10,7 +10,7 @@ import { conditionOf } from '../session/condition.ts';
 import type { NodeStatus } from '../wire/types.ts';
 import type { ViewProps } from './view.ts';
 
-// Heads report repairs for multicast streams only.
+// Heads report losses for multicast streams only.
 function numberOf(node: NodeStatus, name: string): number | null {
     const value = node[name];
     return typeof value === 'number' ? value : null;
@@ -31,7 +31,8 @@ export function NetworkView({ session, openNode }: ViewProps) {
     ], [status]);
     const end = x[x.length - 1] ?? 0;
     const delta = status?.delta;
-    const shown = (status?.nodes ?? []).some(node => numberOf(node, 'repairs') !== null);
+    const multicast = status?.multicast;
+    const shown = (status?.nodes ?? []).some(node => numberOf(node, 'lost') !== null);
     return (
         <>
             <section>
@@ -49,8 +50,9 @@ export function NetworkView({ session, openNode }: ViewProps) {
                     { name: 'Of raw', isNumber: true, hint: 'transferred share of the raw pictures', key: node => node.pictureBytes / (node.pictureRawBytes || 1),
                         show: node => (node.pictureRawBytes ? percent(node.pictureBytes / node.pictureRawBytes) : kNone) },
                     ...(shown ? [
-                        { name: 'Repairs', isNumber: true, key: (node: NodeStatus) => numberOf(node, 'repairs') ?? 0, show: (node: NodeStatus) => count(numberOf(node, 'repairs')) },
-                        { name: 'Lost', isNumber: true, key: (node: NodeStatus) => numberOf(node, 'lost') ?? 0, show: (node: NodeStatus) => count(numberOf(node, 'lost')) },
+                        { name: 'Dropped', isNumber: true, hint: 'datagrams that its socket dropped', key: (node: NodeStatus) => numberOf(node, 'dropped') ?? 0,
+                            show: (node: NodeStatus) => count(numberOf(node, 'dropped')) },
+                        { name: 'Lost', isNumber: true, hint: 'datagrams that the network lost', key: (node: NodeStatus) => numberOf(node, 'lost') ?? 0, show: (node: NodeStatus) => count(numberOf(node, 'lost')) },
                     ] : []),
                     { name: 'Losses', isNumber: true, hint: 'returns of the node after a loss', key: node => node.joins, show: node => count(node.joins) },
                     { name: 'Snapshots', isNumber: true, key: node => node.snapshotBytes, show: node => bytes(node.snapshotBytes) },
@@ -64,6 +66,7 @@ export function NetworkView({ session, openNode }: ViewProps) {
             <dl class="facts wide">
                 <div><dt>This page</dt><dd>round trip {ms(roundTrip)}</dd></div>
                 {delta && <div><dt>Delta coding</dt><dd>{bytes(delta.rawBytes)} became {bytes(delta.wireBytes)} ({percent((delta.wireBytes ?? 0) / (delta.rawBytes || 1))})</dd></div>}
+                {multicast && <div><dt>Multicast</dt><dd>{count(multicast.repairs)} of {count(multicast.datagrams)} datagrams sent again, {count(multicast.parity)} for correction</dd></div>}
                 {!delta && <div><dt>Delta coding</dt><dd>off</dd></div>}
             </dl>
         </>

@@ -75,6 +75,7 @@ export interface Status {
     recording: Recording | null;
     equalizers: Equalizer[] | null;
     delta: Record<string, number> | null;
+    multicast?: Record<string, number> | null;
     programs: ProgramStatus[];
     nodes: NodeStatus[];
 }
