@@ -31,6 +31,7 @@
 #include "nodes/render/output_proof.hpp"
 #include "nodes/render/player_config.hpp"
 #include "nodes/render/replay_spans.hpp"
+#include "nodes/render/windows/preview_sender.hpp"
 #include "nodes/render/windows/tile_windows.hpp"
 #include "nodes/render/work_clock.hpp"
 #include "nodes/frame_transfer/picture_sender.hpp"
@@ -173,6 +174,7 @@ private:
         case wire::HeadCommand::Statistics: return spans_.record(rest);
         case wire::HeadCommand::ClockProbe: return replyClock(rest);
         case wire::HeadCommand::ProveOutput: return proveOutput(rest);
+        case wire::HeadCommand::WantPreview: return sendPreview(rest);
         case wire::HeadCommand::Overlay: return !windows_ || windows_->overlay()->take(rest);
         case wire::HeadCommand::Finish:
             log::debug(log::Topic::Node, "the session ends");
@@ -206,6 +208,19 @@ private:
         if (!command || catchesUp_ || !player_) return command.has_value();
         const auto proof = outputProofOf(*command, completed_, windows_ ? windows_->shown().get() : nullptr);
         sendMessage(wire::NodeMessage::OutputProof, std::as_bytes(std::span(&proof, 1)));
+        return true;
+    }
+
+    // The reply overtakes other messages of this node, because another thread sends it.
+    bool sendPreview(std::span<const std::byte> arguments) {
+        const auto command = argument<wire::WantPreviewCommand>(arguments);
+        if (!command || catchesUp_ || !windows_) return command.has_value();
+        if (!previews_)
+            previews_ = std::make_unique<PreviewSender>(
+                [this](std::span<const std::byte> header, std::span<const std::byte> jpeg) {
+                    line_->send(wire::NodeMessage::PreviewTile, header, jpeg);
+                });
+        previews_->request(*command, windows_->shown());
         return true;
     }
 
@@ -554,6 +569,7 @@ private:
     std::map<uint32_t, uint64_t> calls_;  // commands by client, in completed packets
     std::map<uint32_t, uint32_t> frames_; // latest frame by client
     CompletedFrame completed_;
+    std::unique_ptr<PreviewSender> previews_; // null: nobody has looked
     LostBitsNotice lostBits_;
     bool invalid_ = false;      // this node can't draw the picture of the others
     bool losesPackets_ = false; // planted fault

@@ -44,6 +44,7 @@ enum class HeadCommand : uint32_t {
     Leave = 16,       // u32 node: that node sends everything about earlier packets, replies Goodbye, and is no member
     Overlay = 17,     // u32 mode of each node, by number (nodes/overlay/overlay_mode.hpp): drawn over its windows
     ProveOutput = 18, // ProveOutputCommand: the node replies OutputProof (streamcodec/wire/output_proof.hpp)
+    WantPreview = 19, // WantPreviewCommand: nodes with windows reply PreviewTile (streamcodec/wire/preview_tile.hpp)
 };
 struct SwitchToMulticastCommand {
     uint32_t node;

@@ -29,6 +29,7 @@ enum class NodeMessage : uint32_t {
     ObjectRequest =
         16,           // u32 client, then a message about distributed objects to the program (objects/wire/messages.hpp)
     OutputProof = 17, // OutputProofMessage: the reply to ProveOutput
+    PreviewTile = 18, // PreviewTileHeader + JPEG: the reply to WantPreview
 };
 
 struct MessageHeader {

@@ -91,7 +91,7 @@ TEST_F(LinkTableTest, outlivesItsPage) {
     EXPECT_TRUE(expired.list(61 * kNsPerS).empty());
 }
 
-TEST_F(LinkTableTest, invalidListsRestoreNothing) {
+TEST_F(LinkTableTest, restoresNothingFromInvalidLists) {
     const Json good = [this] {
         create({});
         return links_.kept(0);
@@ -116,7 +116,7 @@ TEST_F(LinkTableTest, invalidListsRestoreNothing) {
     EXPECT_TRUE(table.restore(good, 0));
 }
 
-TEST_F(LinkTableTest, limitEndsTheOldestOnes) {
+TEST_F(LinkTableTest, endsTheOldestOnesAboveALimit) {
     LinkTerms owner;
     owner.role = Role::Operate;
     owner.name = "owner";

@@ -112,6 +112,36 @@ def pixels_of(png):
 
 
 @cases.case
+def windows_of_nodes(context):
+    """Pictures of the nodes' own windows, in each class; nodes send none unless somebody looks."""
+    wrong = []
+    with session(context, "2x1", "windows") as run:
+        if draws(run) is not True:
+            return draws(run)
+        with Page(context, run) as page, WebSocket(page.url) as viewer:
+            viewer.hello(page.token)
+            for name, of, size in (("thumb", "wall", (320, 200)), ("full", "wall", (320, 200)), ("preview", 1, (160, 200))):
+                reply = viewer.ask("preview", {"class": name, "of": of})
+                found = viewer.pictures(3)
+                frames = [header["frame"] for header, _ in found if not header["flags"] & STILL]
+                if not reply["ok"] or len(found) < 3 or frames != sorted(set(frames)):
+                    wrong.append("%s of %s: %s, frames %s" % (name, of, reply, frames))
+                elif (found[-1][0]["pictureWidth"], found[-1][0]["pictureHeight"]) != size:
+                    wrong.append("%s of %s: %s" % (name, of, found[-1][0]))
+            viewer.ask("preview", {"class": "full"})
+            programs = stopped(run, 1)
+            viewer.pictures(4, 2)
+            shown = pixels_of(request(page.url, "/api/v1/picture.png", page.token)[2])
+            goes_on(programs)
+            viewer.ask("preview", {"class": "off"})
+            bright = sum(shown) / len(shown)
+            halves = [sum(shown[at] for y in range(200) for at in range(960 * y + left, 960 * y + left + 480, 7)) for left in (0, 480)]
+            if bright < 5 or min(halves) == 0:
+                wrong.append("the picture is dark: mean %.1f, halves %s" % (bright, halves))
+        return ended(context, run, wrong)
+
+
+@cases.case
 def video(context):
     """H.264 by one encoder: key frames on join and loss alone, decodable, then the exact still; JPEG for others."""
     wrong = []

@@ -25,7 +25,7 @@ Json proof(int node, const Json& hash) {
     return {{"node", node}, {"frame", 70 + node}, {"hash", hash}, {"ageSeconds", 0.5}, {"skewMs", nullptr}};
 }
 
-TEST(OutputList, areasAreFractionsOfTheFirstCanvas) {
+TEST(OutputList, describesAreasAsFractionsOfTheFirstCanvas) {
     const Json areas = areasOf(kWall);
     EXPECT_EQ(areas.size(), 3u);
     EXPECT_EQ(areas["front/right"], Json({0.5, 0.0, 0.5, 0.5}));
@@ -33,7 +33,7 @@ TEST(OutputList, areasAreFractionsOfTheFirstCanvas) {
     EXPECT_TRUE(areasOf({{"canvases", {{{"name", "x"}, {"sizePx", {0, 0}}, {"segments", Json::array()}}}}}).empty());
 }
 
-TEST(OutputList, theHeadsPictureProvesSegmentsWithoutWindows) {
+TEST(OutputList, provesSegmentsWithoutWindowsByTheHeadsPicture) {
     const Json proofs = {{"frame", 12},
                          {"areas", {{"front/left", "aa"}, {"front/right", "bb"}}},
                          {"nodes", {proof(0, nullptr), proof(1, nullptr), proof(2, nullptr)}}};
@@ -45,7 +45,7 @@ TEST(OutputList, theHeadsPictureProvesSegmentsWithoutWindows) {
     EXPECT_EQ(list[1]["node"], 1);
 }
 
-TEST(OutputList, windowsOfNodesPrecedeTheHeadsPicture) {
+TEST(OutputList, prefersWindowsOfNodesToTheHeadsPicture) {
     const Json proofs = {{"frame", 12}, {"areas", {{"front/left", "aa"}}}, {"nodes", {proof(0, "cc"), proof(2, "dd")}}};
     const Json list = outputList(kWall, proofs);
     ASSERT_EQ(list.size(), 2u); // node 1 has proved nothing yet

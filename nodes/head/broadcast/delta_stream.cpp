@@ -105,7 +105,7 @@ void DeltaStream::filterPacket(uint32_t stream, std::span<const std::byte> paylo
     if (command == wire::HeadCommand::ClientGone)
         filter_.clientGone(words[1]);
     else if (command != wire::HeadCommand::ClockProbe && command != wire::HeadCommand::Statistics &&
-             command != wire::HeadCommand::ProveOutput)
+             command != wire::HeadCommand::ProveOutput && command != wire::HeadCommand::WantPreview)
         filter_.releaseAll();
     encode(stream, payload);
 }

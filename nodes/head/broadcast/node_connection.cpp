@@ -207,6 +207,7 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
             break;
         return handle([&] { return events_.nodeClock(location_.node, message); });
     }
+    case NodeMessage::PreviewTile: return readPreviewTile(header.sizeBytes);
     case NodeMessage::OutputProof: {
         wire::OutputProofMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
@@ -257,6 +258,17 @@ Result<void> NodeConnection::readList(uint32_t sizeBytes, uint32_t& first, std::
     entries.resize(entriesBytes / sizeof(Entry));
     if (entries.empty()) return {};
     return connection_->read(std::as_writable_bytes(std::span(entries)), Deadline::inMs(kMessageLimitMs));
+}
+
+Result<void> NodeConnection::readPreviewTile(uint32_t sizeBytes) {
+    wire::PreviewTileHeader header{};
+    if (sizeBytes < sizeof(header) || sizeBytes - sizeof(header) > wire::kMaxPreviewBytes)
+        return Error{"it sent a preview of invalid size"};
+    if (auto got = readStruct(header); !got) return got;
+    std::vector<std::byte> jpeg(sizeBytes - sizeof(header));
+    if (!jpeg.empty())
+        if (auto got = connection_->read(jpeg, Deadline::inMs(kMessageLimitMs)); !got) return got;
+    return handle([&] { return events_.nodePreviewTile(location_.node, header, jpeg); });
 }
 
 Result<void> NodeConnection::readFrameSpans(uint32_t sizeBytes) {

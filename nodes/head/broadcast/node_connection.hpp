@@ -19,6 +19,7 @@
 #include "streamcodec/wire/frame_spans.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/output_proof.hpp"
+#include "streamcodec/wire/preview_tile.hpp"
 #include "streamcodec/wire/replies.hpp"
 #include "transport/connection.hpp"
 
@@ -49,6 +50,8 @@ public:
                                         const std::vector<wire::FrameSpan>& spans) = 0;
     virtual Result<void> nodeClock(int node, const wire::ClockReplyMessage& message) = 0;
     virtual Result<void> nodeOutputProof(int node, const wire::OutputProofMessage& message) = 0;
+    virtual Result<void> nodePreviewTile(int node, const wire::PreviewTileHeader& header,
+                                         const std::vector<std::byte>& jpeg) = 0;
     // The last call for a node that ended without Goodbye, after all of its messages.
     virtual void nodeLost(int node, const std::string& why) = 0;
 };
@@ -163,6 +166,7 @@ private:
     Result<void> readInView(uint32_t sizeBytes);
     Result<void> readTurns(uint32_t sizeBytes);
     Result<void> readFrameSpans(uint32_t sizeBytes);
+    Result<void> readPreviewTile(uint32_t sizeBytes);
     // Reads a number followed by a list that fills the message.
     template <class Entry>
     Result<void> readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries, const char* what);

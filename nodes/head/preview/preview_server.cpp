@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fcntl.h>
 #include <poll.h>
@@ -14,9 +15,10 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "common/base/clock.hpp"
 #include "common/ipc/user_socket.hpp"
 #include "common/log/log.hpp"
-#include "nodes/head/preview/reduce_picture.hpp"
+#include "nodes/output/reduce_picture.hpp"
 
 namespace mural {
 
@@ -25,7 +27,8 @@ namespace {
 constexpr int kPageBacklog = 16;
 constexpr int kNicePreview = 10; // below the threads that draw, send and assemble
 constexpr int kAcceptRestMs = 50;
-constexpr int kPreviewSliceMs = 60'000; // offers, pages and the destructor wake the thread earlier
+constexpr int64_t kAskEveryNs = 66 * kNsPerMs; // of the nodes: 15 pictures per second
+constexpr int kPreviewSliceMs = 60'000;        // offers, pages and the destructor wake the thread earlier
 
 Error previewError(const std::string& path, const std::string& why) {
     return Error{"the socket " + path + " cannot be opened: " + why + "; pages show no pictures of this session"};
@@ -72,21 +75,24 @@ PreviewServer::Memory PreviewServer::mapped(FileDescriptor memory) {
     return result;
 }
 
-Result<std::unique_ptr<PreviewServer>> PreviewServer::start(const std::string& path,
-                                                            std::function<std::optional<Viewport>(int node)> areaOf) {
+Result<std::unique_ptr<PreviewServer>> PreviewServer::start(const std::string& path, AreaOf areaOf, OnWanted onWanted) {
     auto listener = listenForUser(path, SOCK_SEQPACKET, kPageBacklog);
     if (!listener) return previewError(path, listener.error().message);
     FileDescriptor wake(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
     if (!wake.valid()) return previewError(path, std::string("eventfd: ") + std::strerror(errno));
     std::unique_ptr<PreviewServer> server(
-        new PreviewServer(path, std::move(*listener), std::move(wake), std::move(areaOf)));
+        new PreviewServer(path, std::move(*listener), std::move(wake), std::move(areaOf), std::move(onWanted)));
     server->thread_ = std::thread([raw = server.get()] { raw->serve(); });
     return server;
 }
 
-PreviewServer::PreviewServer(std::string path, FileDescriptor listener, FileDescriptor wake,
-                             std::function<std::optional<Viewport>(int node)> areaOf)
-    : path_(std::move(path)), listener_(std::move(listener)), wake_(std::move(wake)), areaOf_(std::move(areaOf)) {}
+PreviewServer::PreviewServer(std::string path, FileDescriptor listener, FileDescriptor wake, AreaOf areaOf,
+                             OnWanted onWanted)
+    : path_(std::move(path)),
+      listener_(std::move(listener)),
+      wake_(std::move(wake)),
+      areaOf_(std::move(areaOf)),
+      onWanted_(std::move(onWanted)) {}
 
 PreviewServer::~PreviewServer() {
     stop_ = true;
@@ -96,11 +102,14 @@ PreviewServer::~PreviewServer() {
     unlink(path_.c_str());
 }
 
-void PreviewServer::offer(int64_t frame, std::shared_ptr<const OwnedPicture> picture) {
+void PreviewServer::offer(int64_t frame, std::shared_ptr<const OwnedPicture> picture, int sourceWidth,
+                          int sourceHeight) {
+    const int width = sourceWidth > 0 ? sourceWidth : picture->width(),
+              height = sourceHeight > 0 ? sourceHeight : picture->height();
+    Latest next{std::move(picture), frame, width, height};
     {
         const std::lock_guard lock(mutex_);
-        latest_.swap(picture); // the earlier picture may be freed, which takes no lock
-        latestFrame_ = frame;
+        std::swap(latest_, next); // the earlier picture may be freed, which takes no lock
     }
     if (!hasWish_.load(std::memory_order_acquire)) return;
     const uint64_t one = 1;
@@ -109,7 +118,7 @@ void PreviewServer::offer(int64_t frame, std::shared_ptr<const OwnedPicture> pic
 
 PreviewServer::Latest PreviewServer::latest() const {
     const std::lock_guard lock(mutex_);
-    return {latest_, latestFrame_};
+    return latest_;
 }
 
 void PreviewServer::serve() {
@@ -117,7 +126,7 @@ void PreviewServer::serve() {
     while (!stop_) {
         std::vector<pollfd> polled{{listener_.get(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
         for (const Page& page : pages_) polled.push_back({page.socket.get(), POLLIN, 0});
-        if (poll(polled.data(), polled.size(), kPreviewSliceMs) <= 0) continue;
+        if (poll(polled.data(), polled.size(), askNodes()) < 0) continue;
         uint64_t count = 0;
         [[maybe_unused]] const ssize_t n = read(wake_.get(), &count, sizeof count);
         if (stop_) break;
@@ -127,18 +136,38 @@ void PreviewServer::serve() {
         if (polled[0].revents != 0) acceptPage();
         // Set before the look at the latest picture, so an offer in between wakes the thread again.
         hasWish_ = std::ranges::any_of(pages_, [](const Page& page) { return page.wish.has_value(); });
-        std::shared_ptr<const OwnedPicture> picture;
-        uint64_t frame = 0;
-        {
-            const std::lock_guard lock(mutex_);
-            picture = latest_;
-            frame = static_cast<uint64_t>(latestFrame_);
-        }
+        const Latest now = latest();
         for (Page& page : pages_)
-            if (picture && page.wish && frame > page.wish->afterFrame) fulfil(page, frame, picture);
+            if (now.picture && page.wish && static_cast<uint64_t>(now.frame) > page.wish->afterFrame &&
+                suffices(now, *page.wish))
+                fulfil(page, now);
         std::erase_if(pages_, [](const Page& page) { return page.isGone; });
     }
     pages_.clear();
+}
+
+// Requests pictures for the pages that wait. Returns the time for which the thread may wait, in ms.
+int PreviewServer::askNodes() {
+    if (!onWanted_) return kPreviewSliceMs;
+    uint32_t width = 0, height = 0;
+    for (const Page& page : pages_) {
+        if (!page.wish) continue;
+        width = std::max(width, page.wish->maxWidth);
+        height = std::max(height, page.wish->maxHeight);
+    }
+    if (width == 0) return kPreviewSliceMs;
+    const int64_t nowNs = monotonicNowNs(), leftNs = askedNs_ + kAskEveryNs - nowNs;
+    if (leftNs > 0) return static_cast<int>(leftNs / kNsPerMs) + 1;
+    askedNs_ = nowNs;
+    onWanted_(width, height);
+    return static_cast<int>(kAskEveryNs / kNsPerMs);
+}
+
+// A picture that was reduced for a smaller wish does not suffice.
+bool PreviewServer::suffices(const Latest& latest, const PictureWish& wish) {
+    return latest.picture->width() >= reducedSize(latest.sourceWidth, latest.sourceHeight,
+                                                  static_cast<int>(wish.maxWidth), static_cast<int>(wish.maxHeight))
+                                          .width;
 }
 
 void PreviewServer::acceptPage() {
@@ -165,9 +194,10 @@ void PreviewServer::receive(Page& page) {
     page.wish = wish;
 }
 
-void PreviewServer::fulfil(Page& page, uint64_t frame, const std::shared_ptr<const OwnedPicture>& picture) {
+void PreviewServer::fulfil(Page& page, const Latest& latest) {
     const PictureWish wish = *page.wish;
-    Picture source = picture->view();
+    Picture source = latest.picture->view();
+    const double scale = static_cast<double>(latest.sourceWidth) / source.width;
     if (source.format != PictureFormat::Bgra8) {
         eightBits_.resize(source.width, source.height);
         copyInto(eightBits_, 0, 0, source);
@@ -186,9 +216,9 @@ void PreviewServer::fulfil(Page& page, uint64_t frame, const std::shared_ptr<con
     PictureNotice notice;
     notice.width = static_cast<uint32_t>(size.width);
     notice.height = static_cast<uint32_t>(size.height);
-    notice.sourceWidth = static_cast<uint32_t>(source.width);
-    notice.sourceHeight = static_cast<uint32_t>(source.height);
-    notice.frame = frame;
+    notice.sourceWidth = static_cast<uint32_t>(std::lround(source.width * scale));
+    notice.sourceHeight = static_cast<uint32_t>(std::lround(source.height * scale));
+    notice.frame = static_cast<uint64_t>(latest.frame);
     notice.bytes = uint64_t{notice.width} * notice.height * kPictureBytesPerPixel;
     if (notice.bytes > page.memory.size)
         notice.outcome = PictureOutcome::NeedsMemory;

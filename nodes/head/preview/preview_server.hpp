@@ -26,8 +26,11 @@ public:
 
     // path: of the socket; it gets mode 600. areaOf: the part of the wall that a node shows; nullopt: none. Called by
     // the server's thread.
-    static Result<std::unique_ptr<PreviewServer>> start(const std::string& path,
-                                                        std::function<std::optional<Viewport>(int node)> areaOf);
+    // onWanted: requests a picture from the nodes, at most these sizes, while a page waits for one and the head may
+    // have none itself. Called by the server's thread, several times per second. Empty: the head has all pictures.
+    using AreaOf = std::function<std::optional<Viewport>(int node)>;
+    using OnWanted = std::function<void(uint32_t maxWidth, uint32_t maxHeight)>;
+    static Result<std::unique_ptr<PreviewServer>> start(const std::string& path, AreaOf areaOf, OnWanted onWanted = {});
     PreviewServer(const PreviewServer&) = delete;
     PreviewServer& operator=(const PreviewServer&) = delete;
     ~PreviewServer(); // removes the socket
@@ -35,12 +38,14 @@ public:
     struct Latest {
         std::shared_ptr<const OwnedPicture> picture; // null: none yet
         int64_t frame = 0;
+        int sourceWidth = 0, sourceHeight = 0; // before a reduction
     };
     // Any thread.
     [[nodiscard]] Latest latest() const;
 
     // Offers the latest picture of the wall. Does not block; any thread.
-    void offer(int64_t frame, std::shared_ptr<const OwnedPicture> picture);
+    // source: size before a reduction; 0: the picture's own.
+    void offer(int64_t frame, std::shared_ptr<const OwnedPicture> picture, int sourceWidth = 0, int sourceHeight = 0);
 
 private:
     struct Memory {
@@ -67,26 +72,28 @@ private:
         bool isGone = false;
     };
 
-    PreviewServer(std::string path, FileDescriptor listener, FileDescriptor wake,
-                  std::function<std::optional<Viewport>(int node)> areaOf);
+    PreviewServer(std::string path, FileDescriptor listener, FileDescriptor wake, AreaOf areaOf, OnWanted onWanted);
+    [[nodiscard]] int askNodes();
+    [[nodiscard]] static bool suffices(const Latest& latest, const PictureWish& wish);
     void serve();
     void acceptPage();
     void receive(Page& page);
-    void fulfil(Page& page, uint64_t frame, const std::shared_ptr<const OwnedPicture>& picture);
+    void fulfil(Page& page, const Latest& latest);
     void give(Page& page, const PictureNotice& notice);
     static Memory mapped(FileDescriptor memory);
 
     const std::string path_;
     const FileDescriptor listener_;
     const FileDescriptor wake_; // eventfd
-    const std::function<std::optional<Viewport>(int node)> areaOf_;
+    const AreaOf areaOf_;
+    const OnWanted onWanted_;
+    int64_t askedNs_ = 0;     // the latest call of onWanted_
     std::vector<Page> pages_; // of the thread
     OwnedPicture eightBits_, part_;
     std::atomic<bool> hasWish_{false};
     std::atomic<bool> stop_{false};
     mutable std::mutex mutex_; // guards the members below
-    std::shared_ptr<const OwnedPicture> latest_;
-    int64_t latestFrame_ = 0;
+    Latest latest_;
     std::thread thread_;
 };
 

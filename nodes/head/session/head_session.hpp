@@ -41,6 +41,7 @@
 #include "nodes/head/planning/plan_change.hpp"
 #include "nodes/head/preview/output_proofs.hpp"
 #include "nodes/head/preview/preview_server.hpp"
+#include "nodes/head/preview/window_pictures.hpp"
 #include "nodes/head/recording/session_recording.hpp"
 #include "nodes/head/session/session_report.hpp"
 #include "nodes/head/session/session_status.hpp"
@@ -130,6 +131,8 @@ private:
                                 const std::vector<wire::FrameSpan>& spans) override;
     Result<void> nodeClock(int node, const wire::ClockReplyMessage& message) override;
     Result<void> nodeOutputProof(int node, const wire::OutputProofMessage& message) override;
+    Result<void> nodePreviewTile(int node, const wire::PreviewTileHeader& header,
+                                 const std::vector<std::byte>& jpeg) override;
     void nodeLost(int node, const std::string& why) override;
 
     // Statistics of frames (head_session_statistics.cpp).
@@ -302,6 +305,9 @@ private:
     ReplyAssembler answers_;
     DriverEventMerger driverEvents_;
     OutputProofs outputProofs_;
+    WindowPictures windowPictures_{[this](const WindowPictures::Composed& composed) {
+        if (preview_) preview_->offer(composed.frame, composed.picture, composed.wallWidth, composed.wallHeight);
+    }};
     std::unique_ptr<PreviewServer> preview_; // null: the head receives no pictures, or has no socket for pages
     std::unique_ptr<PictureOutput> output_;  // null: the head receives no pictures
     PlanSequence plans_;

@@ -4,6 +4,7 @@
 
 #include "common/log/log.hpp"
 #include "common/log/process_log.hpp"
+#include "nodes/head/broadcast/bytes_of.hpp"
 #include "nodes/head/control/equalizer_operations.hpp"
 #include "nodes/head/session/head_session.hpp"
 #include "nodes/launch/session_socket.hpp"
@@ -60,8 +61,14 @@ void HeadSession::openControl() {
 
 void HeadSession::openPreview() {
     if (config_.socketPath.empty() || !output_) return;
-    auto started = PreviewServer::start(launch::pictureSocketOf(config_.socketPath),
-                                        [this](int node) { return areaOnWall(node); });
+    PreviewServer::OnWanted onWanted;
+    if (config_.display == Display::Windows)
+        onWanted = [this](uint32_t width, uint32_t height) {
+            nodes_.scheduleSoon(wire::HeadCommand::WantPreview, bytesOf(windowPictures_.begin(width, height)));
+        };
+    auto started = PreviewServer::start(
+        launch::pictureSocketOf(config_.socketPath), [this](int node) { return areaOnWall(node); },
+        std::move(onWanted));
     if (started)
         preview_ = std::move(*started);
     else

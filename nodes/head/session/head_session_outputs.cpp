@@ -97,6 +97,14 @@ Result<Json> HeadSession::outputsJson(const Json& arguments) {
                 {"nodes", std::move(nodes)}};
 }
 
+// Nodes of further canvases have windows of a picture that the page does not show.
+Result<void> HeadSession::nodePreviewTile(int node, const wire::PreviewTileHeader& header,
+                                          const std::vector<std::byte>& jpeg) {
+    const auto stage = plans_.of(node);
+    if (stage->plan.nodes[static_cast<size_t>(node)].canvas != 0 || hasLeft(node)) return {};
+    return windowPictures_.add(node, header, jpeg);
+}
+
 Result<void> HeadSession::nodeOutputProof(int node, const wire::OutputProofMessage& message) {
     outputProofs_.add(node, message);
     return {};

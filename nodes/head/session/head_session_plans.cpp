@@ -471,6 +471,7 @@ void HeadSession::endLeftNodes(int64_t nowNs) {
 // Frees what a node has used that never joined or has left for good. Its number is not used again. Called by the
 // session's thread, after the node's reader has ended.
 void HeadSession::forgetNode(int node) {
+    windowPictures_.forget(node);
     nodes_.retire(node);
     multicastNodes_.erase(node);
     deltaNodes_.erase(node);

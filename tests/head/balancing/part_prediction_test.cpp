@@ -10,7 +10,7 @@ constexpr std::array<int, 2> kNodes = {0, 1};
 constexpr std::array<Viewport, 2> kHalves = {{{0, 0, .5, 1}, {.5, 0, .5, 1}}};
 constexpr std::array<Viewport, 2> kQuarter = {{{0, 0, .25, 1}, {.25, 0, .75, 1}}};
 
-TEST(PartPrediction, costsAreEvenWithinAPart) {
+TEST(PartPrediction, spreadsCostsEvenlyWithinAPart) {
     PartPrediction prediction;
     prediction.measured(0, 0, 8e6);
     prediction.measured(1, 0, 2e6);
@@ -21,7 +21,7 @@ TEST(PartPrediction, costsAreEvenWithinAPart) {
     EXPECT_FALSE(prediction.measuredNs(0)); // no frame with the new part yet
 }
 
-TEST(PartPrediction, framesOfEarlierPartsDoNotCount) {
+TEST(PartPrediction, ignoresFramesOfEarlierParts) {
     PartPrediction prediction;
     prediction.measured(0, 0, 8e6);
     prediction.measured(1, 0, 2e6);
@@ -34,7 +34,7 @@ TEST(PartPrediction, framesOfEarlierPartsDoNotCount) {
     EXPECT_DOUBLE_EQ(prediction.measuredNs(0).value(), 5e6);
 }
 
-TEST(PartPrediction, aNodeWithoutATimeIsUnknown) {
+TEST(PartPrediction, leavesNodesWithoutATimeUnknown) {
     PartPrediction prediction;
     prediction.measured(0, 0, 8e6);
     prediction.moved(kNodes, 1, kHalves, kQuarter);
@@ -42,7 +42,7 @@ TEST(PartPrediction, aNodeWithoutATimeIsUnknown) {
     EXPECT_FALSE(prediction.predictedNs(1));
 }
 
-TEST(PartPrediction, rangesOfDraws) {
+TEST(PartPrediction, predictsRangesOfDraws) {
     PartPrediction prediction;
     const std::array<Range, 2> before = {{{0, .5}, {.5, 1}}}, after = {{{0, .75}, {.75, 1}}};
     prediction.measured(0, 0, 2e6);

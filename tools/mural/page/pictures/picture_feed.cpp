@@ -33,7 +33,7 @@ Result<std::shared_ptr<PictureFeed>> PictureFeed::connect(boost::asio::io_contex
     if (!fd.valid()) return noPictures(std::strerror(errno));
     if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
         if (errno == ENOENT || errno == ECONNREFUSED)
-            return noPictures("it receives none from the nodes; run with --display app or --out");
+            return noPictures("it receives none from the nodes; run with --display app, --display windows or --out");
         return noPictures(std::strerror(errno));
     }
     std::shared_ptr<PictureFeed> feed(new PictureFeed(boost::asio::posix::stream_descriptor(io, fd.release())));

@@ -10,7 +10,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
-#include "nodes/head/preview/reduce_picture.hpp"
+#include "nodes/output/reduce_picture.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace mural {

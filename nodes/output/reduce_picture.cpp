@@ -1,4 +1,4 @@
-#include "nodes/head/preview/reduce_picture.hpp"
+#include "nodes/output/reduce_picture.hpp"
 
 #include <algorithm>
 #include <cstring>
