@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
+#include <unistd.h>
 #include <vector>
 
 #include <spdlog/logger.h>
@@ -36,6 +40,36 @@ std::string diagnosticPattern(const std::string& role) {
     return "%Y-%m-%dT%H:%M:%S.%fZ " + escaped(role) + "[%P] %n %l: %v";
 }
 
+// Appends a text within quotes. Bytes of UTF-8 stay as they are.
+void appendQuoted(std::string& line, std::string_view text) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    line += '"';
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            (line += '\\') += c;
+        } else if (byte < 0x20) {
+            line.append("\\u00");
+            (line += kDigits[byte >> 4]) += kDigits[byte & 15];
+        } else {
+            line += c;
+        }
+    }
+    line += '"';
+}
+
+std::string timeText() {
+    const auto now = std::chrono::time_point_cast<std::chrono::microseconds>(std::chrono::system_clock::now());
+    const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+    std::tm utc{};
+    gmtime_r(&seconds, &utc);
+    std::array<char, 40> text{};
+    const auto micros = static_cast<int>(now.time_since_epoch().count() % 1'000'000);
+    const size_t size = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+    std::snprintf(text.data() + size, text.size() - size, ".%06dZ", micros);
+    return text.data();
+}
+
 class Outputs {
 public:
     Outputs() : lines_(std::make_shared<Sink>()), diagnostics_(std::make_shared<Sink>()) {
@@ -49,12 +83,25 @@ public:
     }
 
     void setPrefix(const std::string& prefix) { lines_->set_pattern(escaped(prefix) + "%v"); }
+    // Call before other threads log.
+    void setJson(bool isJson) {
+        isJson_ = isJson;
+        if (isJson) setPrefix("");
+    }
     void setRole(const std::string& role) {
+        {
+            const std::lock_guard lock(roleMutex_);
+            role_ = role;
+        }
         diagnostics_->set_formatter(
             std::make_unique<spdlog::pattern_formatter>(diagnosticPattern(role), spdlog::pattern_time_type::utc));
     }
 
     void write(Topic topic, Level level, std::string_view text) {
+        if (isJson_) {
+            user_.log(spdlog::level::info, jsonOf(topic, level, text));
+            return;
+        }
         if (level < Level::Info) {
             loggers_[static_cast<size_t>(topic)]->log(level == Level::Trace ? spdlog::level::trace
                                                                             : spdlog::level::debug,
@@ -65,6 +112,21 @@ public:
     }
 
 private:
+    std::string jsonOf(Topic topic, Level level, std::string_view text) {
+        std::string line = "{\"ts\":\"" + timeText() + "\",\"level\":\"";
+        line.append(nameOf(level)).append("\",\"topic\":\"").append(nameOf(topic)).append("\",\"process\":");
+        {
+            const std::lock_guard lock(roleMutex_);
+            appendQuoted(line, role_);
+        }
+        line.append(",\"pid\":").append(std::to_string(getpid())).append(",\"text\":");
+        appendQuoted(line, text);
+        return line + "}";
+    }
+
+    std::atomic<bool> isJson_{false};
+    std::mutex roleMutex_; // guards role_
+    std::string role_;
     const std::shared_ptr<Sink> lines_, diagnostics_;
     spdlog::logger user_{"user", lines_};
     std::vector<std::unique_ptr<spdlog::logger>> loggers_; // by topic
@@ -142,6 +204,11 @@ Result<void> start(const std::string& role, const std::string& prefix) {
     const auto levels = parseLevels(text);
     if (!levels) return Error{"MURAL_LOG=" + text + ": " + levels.error().message};
     setLevels(levels.value());
+    const char* const form = std::getenv("MURAL_LOG_FORMAT");
+    const std::string_view format = form != nullptr ? form : "";
+    if (!format.empty() && format != "text" && format != "json")
+        return Error{"MURAL_LOG_FORMAT=" + std::string(format) + ": expected text or json"};
+    state().outputs.setJson(format == "json");
     return {};
 }
 

@@ -1,7 +1,8 @@
 // Settings of this process's log: levels, name, and the destination of lines.
 //
 // Lines for the user (Level::Info and above) go to the innermost Receiver, otherwise to standard error, as
-// "PREFIXtext". Diagnostics go to standard error with time (UTC), process, topic and level.
+// "PREFIXtext". Diagnostics go to standard error with time (UTC), process, topic and level. With MURAL_LOG_FORMAT=json
+// each line is an object instead.
 #pragma once
 
 #include <functional>
@@ -12,7 +13,7 @@
 
 namespace mural::log {
 
-// Names the process and applies MURAL_LOG. Errors: MURAL_LOG is invalid.
+// Names the process and applies MURAL_LOG and MURAL_LOG_FORMAT. Errors: one of them is invalid.
 Result<void> start(const std::string& role, const std::string& prefix);
 // Changes the name in diagnostics, such as "node 3".
 void setRole(const std::string& role);

@@ -146,6 +146,24 @@ TEST(Log, printsDiagnosticsWithTimeProcessTopicAndLevel) {
         << printed;
 }
 
+TEST(Log, printsObjectsWithTheFormatJson) {
+    setenv("MURAL_LOG_FORMAT", "yaml", 1);
+    const auto wrong = log::start("test", "test: ");
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().message, "MURAL_LOG_FORMAT=yaml: expected text or json");
+    setenv("MURAL_LOG_FORMAT", "json", 1);
+    ASSERT_TRUE(log::start("node 3", "test: "));
+    testing::internal::CaptureStderr();
+    log::warning(Topic::Output, "\"quoted\" \\ tab\t %v {} \u00e4");
+    const std::string printed = testing::internal::GetCapturedStderr();
+    unsetenv("MURAL_LOG_FORMAT");
+    ASSERT_TRUE(log::start("mural", "mural: "));
+    const std::string same =
+        std::regex_replace(printed, std::regex(R"re(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z|"pid":\d+)re"), "*");
+    EXPECT_EQ(same, "{\"ts\":\"*\",\"level\":\"warning\",\"topic\":\"output\",\"process\":\"node 3\",*,"
+                    "\"text\":\"\\\"quoted\\\" \\\\ tab\\u0009 %v {} \u00e4\"}\n");
+}
+
 TEST(Log, givesLinesToTheInnermostReceiver) {
     std::vector<std::string> outer, inner;
     const auto into = [](std::vector<std::string>& lines) {

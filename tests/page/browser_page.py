@@ -487,11 +487,12 @@ def with_the_run(context):
 
 @cases.case
 def ends(context):
-    """kill -9 of the page loses no frame (A-12); a lost head is reported, and the page ends."""
+    """kill -9 of the page loses no frame (A-12); links and the audit trail remain; the page ends with a lost head."""
     wrong = []
     with session(context) as run:
         if draws(run) is not True:
             return draws(run)
+        run.environment["MURAL_LOG_FORMAT"] = "json"
         with Page(context, run) as page, WebSocket(page.url) as viewer:
             viewer.hello(page.token)
             viewer.ask("preview", {"class": "full"})
@@ -501,6 +502,12 @@ def ends(context):
             request(page.url, "/api/v1/links/%d" % revoked, page.token, "DELETE")
             page.process.kill()
             page.process.wait()
+            lines = [json.loads(line) for line in page.process.stderr.read().decode().splitlines()]
+            audit = [line["text"] for line in lines if " requests link-revoke " in line["text"] and line["topic"] == "session"]
+            if not audit or not audit[-1].endswith('{"link":%d}: done' % revoked) or "127.0.0.1" not in audit[-1]:
+                wrong.append("audit trail: %s" % [line["text"] for line in lines])
+            if any(secret in line["text"] for line in lines for secret in (page.token, shared, ended_token)):
+                wrong.append("a token is in the log")
         frames = [result_of(context, run, "status")["frames"]]
         time.sleep(0.5)
         state = result_of(context, run, "status")

@@ -17,6 +17,22 @@ namespace {
 constexpr const char* kDenied = "denied";
 constexpr size_t kLoggedBytes = 200;
 
+using Json = nlohmann::json;
+
+// Logs a request, and its result when it comes: who, from where, what, and how it ended.
+PageHub::OnReply audited(const std::string& who, const std::string& operation, const Json& arguments,
+                         PageHub::OnReply onReply) {
+    std::string request =
+        who + " requests " + operation.substr(0, 40) + " " + jsonText(arguments).substr(0, kLoggedBytes);
+    log::info(log::Topic::Session, request);
+    return [request = std::move(request), onReply = std::move(onReply)](PageHub::Json reply) {
+        const bool isDone = reply.value("ok", false);
+        log::line(log::Topic::Session, isDone ? log::Level::Info : log::Level::Warning, request, ": ",
+                  isDone ? std::string("done") : reply.value("error", std::string("failed")));
+        onReply(std::move(reply));
+    };
+}
+
 bool isQuick(Role required) { return required == Role::View; }
 
 } // namespace
@@ -32,9 +48,7 @@ void PageHub::perform(Role role, const std::string& who, const std::string& oper
                                               std::string(nameOf(required)) + "; this link has the role " +
                                               std::string(nameOf(role))));
     }
-    if (required == Role::Operate)
-        log::info(log::Topic::Session, who, " requests ", operation.substr(0, 40), " ",
-                  jsonText(arguments).substr(0, kLoggedBytes));
+    if (required == Role::Operate) onReply = audited(who, operation, arguments, std::move(onReply));
     if (ofPage(operation, arguments, onReply)) return;
     if (operation == "subscribe" || operation == "unsubscribe" || operation == "preview" || operation == "input-take" ||
         operation == "input-release")
