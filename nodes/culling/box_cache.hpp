@@ -1,0 +1,74 @@
+// Boxes of draws by the contents and the layout of their arrays: bounded, least recently used first.
+//
+// A key is boxed when it comes the second time, because vertices that change with each draw never pay.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <unordered_map>
+
+#include "nodes/culling/vertex_boxes.hpp"
+
+namespace mural::culling {
+
+// Numbers that determine the boxes of a draw. Equal keys have equal boxes.
+class BoxKey {
+public:
+    // Numbers beyond the capacity make the key incomplete.
+    void add(uint64_t number) {
+        if (used_ == numbers_.size())
+            isComplete_ = false;
+        else
+            numbers_[used_++] = number;
+    }
+    [[nodiscard]] bool isComplete() const { return isComplete_; }
+    [[nodiscard]] size_t hash() const;
+    friend bool operator==(const BoxKey&, const BoxKey&) = default;
+
+private:
+    std::array<uint64_t, 24> numbers_{};
+    size_t used_ = 0;
+    bool isComplete_ = true;
+};
+
+inline constexpr size_t kBoxCacheBytes = size_t{64} << 20;
+
+class BoxCache {
+public:
+    struct Entry {
+        std::shared_ptr<const DrawBoxes> boxes; // null: not made yet, or impossible
+        bool isImpossible = false;
+        uint32_t sightings = 0;
+        // Draws in a row from which nothing was left out, and draws for which clusters are not tried.
+        uint32_t vain = 0, pause = 0, lastPause = 0;
+
+        [[nodiscard]] bool wantsBoxes() const { return !boxes && !isImpossible && sightings >= 2; }
+    };
+    explicit BoxCache(size_t maxBytes = kBoxCacheBytes) : maxBytes_(maxBytes) {}
+
+    // Counts the sighting. The entry is valid until the next call of look().
+    Entry& look(const BoxKey& key);
+    // Sets the boxes of the entry that look() returned last; null: impossible.
+    void store(std::shared_ptr<const DrawBoxes> boxes);
+    [[nodiscard]] size_t memoryBytes() const { return bytes_; }
+    [[nodiscard]] size_t peakBytes() const { return peakBytes_; }
+
+private:
+    struct Hash {
+        size_t operator()(const BoxKey& key) const { return key.hash(); }
+    };
+    struct Node {
+        BoxKey key;
+        Entry entry;
+        size_t sizeBytes = 0;
+    };
+    void shrink();
+
+    size_t maxBytes_, bytes_ = 0, peakBytes_ = 0;
+    std::list<Node> nodes_; // the latest first
+    std::unordered_map<BoxKey, std::list<Node>::iterator, Hash> byKey_;
+};
+
+} // namespace mural::culling
