@@ -210,6 +210,7 @@ constexpr uint32_t kNoAttribBit = 0x80000000;
 // Arguments of a draw whose vertices may be divided, as words of the record; 0: none. Other draws have no count.
 struct DrawWords {
     uint8_t count = 0, first = 0, type = 0, indices = 0, instances = 0;
+    uint8_t base = 0; // added to each index; its word, if the indices are an offset
     bool operator==(const DrawWords&) const = default;
 };
 

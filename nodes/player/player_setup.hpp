@@ -14,9 +14,11 @@
 #include "common/geometry/pixel_viewport.hpp"
 #include "common/geometry/tile_grid.hpp"
 #include "common/geometry/viewport.hpp"
+#include "nodes/culling/culling_counts.hpp"
 #include "nodes/exchange/part_composition.hpp"
 #include "nodes/exchange/picture_part.hpp"
 #include "nodes/frame_transfer/picture_read.hpp"
+#include "nodes/session/culling_mode.hpp"
 #include "nodes/session/viewport_assignment.hpp"
 #include "nodes/session/readback.hpp"
 #include "nodes/session/render_pass.hpp"
@@ -52,8 +54,9 @@ struct PlayerConfig {
     // The node is in resync, and other nodes have the turns. Until takeTurns() or beginTurns() the node draws all
     // frames and owns none of them. It shares no draws before resetShares().
     bool isResyncing = false;
-    bool cull = false;          // rewritten shaders drop whole primitives outside the region
-    bool lean = false;          // framebuffers of the tile's size; false: of the picture's size (exact)
+    bool cull = false;                      // rewritten shaders drop whole primitives outside the region
+    CullingMode culling = CullingMode::Off; // leaves out vertices that cannot touch its area
+    bool lean = false;                      // framebuffers of the tile's size; false: of the picture's size (exact)
     bool rastersInBins = false; // the driver draws in software, so a region must end on its bins (raster_bins.hpp)
     Readback readback = Readback::Direct; // of Frame::read
     bool deepPictures = false;            // allows Bgr10A2 in Frame::format
@@ -112,6 +115,7 @@ struct PlayerOutputs {
 
 struct PlayerCounts {
     uint64_t commands = 0, malformed = 0, lacking = 0, glErrors = 0, frames = 0, bytes = 0;
+    culling::CullingCounts culling;
 };
 
 } // namespace mural

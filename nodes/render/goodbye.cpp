@@ -32,6 +32,21 @@ int64_t peakMemoryBytes() {
     return 0;
 }
 
+nlohmann::json cullingJson(const culling::CullingCounts& c) {
+    nlohmann::json unexamined = nlohmann::json::object();
+    for (size_t i = 0; i < c.unexamined.size(); ++i)
+        if (c.unexamined[i] > 0) unexamined[culling::nameOf(static_cast<culling::WhyWhole>(i))] = c.unexamined[i];
+    return {{"drawsLeftOut", c.drawsLeftOut},
+            {"drawsCut", c.drawsCut},
+            {"drawsWhole", c.drawsWhole},
+            {"verticesLeftOut", c.verticesLeftOut},
+            {"verticesDrawn", c.verticesDrawn},
+            {"verticesUnexamined", std::move(unexamined)},
+            {"boxBytes", c.boxBytes},
+            {"audits", c.audits},
+            {"faults", c.faults}};
+}
+
 } // namespace
 
 nlohmann::json goodbyeOf(const GoodbyeParts& parts) {
@@ -45,6 +60,7 @@ nlohmann::json goodbyeOf(const GoodbyeParts& parts) {
     bye["receivedBytes"] = receivedBytes;
     bye["cpuSeconds"] = processCpuSeconds();
     bye["peakMemoryBytes"] = peakMemoryBytes();
+    if (counts.culling.isOn) bye["culling"] = cullingJson(counts.culling);
     if (exchange) bye["exchangeBytes"] = exchange->bytesSent();
     if (sender && sender->packs()) {
         bye["pictureBytes"] = sender->packedBytes();

@@ -27,6 +27,7 @@ PlayerConfig playerConfigOf(const NodeSetup& setup, const std::string& renderer)
     config.isResyncing = setup.isResyncing;
     config.lean = setup.tiling == Tiling::Lean;
     config.cull = setup.tiling == Tiling::Culled;
+    config.culling = setup.culling;
     config.rastersInBins = gl::drawsWithoutGpu(renderer);
     config.grid = {setup.columns, setup.rows, config.lean ? 2 : 1};
     config.region = {setup.regionColumn, setup.regionRow, setup.regionColumns, setup.regionRows};

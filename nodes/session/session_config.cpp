@@ -19,6 +19,10 @@ template <> struct EnumNames<Tiling> {
     static constexpr std::pair<Tiling, const char*> kAll[] = {
         {Tiling::Exact, "exact"}, {Tiling::Culled, "culled"}, {Tiling::Lean, "lean"}};
 };
+template <> struct EnumNames<CullingMode> {
+    static constexpr std::pair<CullingMode, const char*> kAll[] = {
+        {CullingMode::Off, "off"}, {CullingMode::Auto, "auto"}, {CullingMode::Audit, "audit"}};
+};
 template <> struct EnumNames<Display> {
     static constexpr std::pair<Display, const char*> kAll[] = {
         {Display::None, "none"}, {Display::App, "app"}, {Display::Windows, "windows"}};
@@ -100,6 +104,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("eyeBase", c.eyeBase);
     visit("focusDistance", c.focusDistance);
     visit("tiling", c.tiling);
+    visit("culling", c.culling);
     visit("display", c.display);
     visit("localRendering", c.localRendering);
     visit("glBackend", c.glBackend);
@@ -164,6 +169,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("eyeBase", s.eyeBase);
     visit("focusDistance", s.focusDistance);
     visit("tiling", s.tiling);
+    visit("culling", s.culling);
     visit("glBackend", s.glBackend);
     visit("gpu", s.gpu);
     visit("gpuTurn", s.gpuTurn, 0);

@@ -11,6 +11,7 @@
 #include "common/base/result.hpp"
 #include "common/geometry/viewport.hpp"
 #include "nodes/overlay/overlay_mode.hpp"
+#include "nodes/session/culling_mode.hpp"
 #include "nodes/session/readback.hpp"
 #include "nodes/session/render_pass.hpp"
 #include "nodes/session/screen_view.hpp"
@@ -66,6 +67,7 @@ struct SessionConfig {
     double eyeBase = 0.05;              // --eye-base: distance between the eyes, in the program's units
     double focusDistance = 1;           // --focus: distance at which both eyes converge, in the program's units
     Tiling tiling = Tiling::Exact;
+    CullingMode culling = CullingMode::Off; // --culling
     Display display = Display::None;
     LocalRendering localRendering = LocalRendering::Off;
     std::string glBackend = "auto";         // --gl: auto, egl, osmesa, glx
@@ -110,6 +112,7 @@ struct NodeSetup {
     bool answers = true;              // programs read the window pixels of this pass
     double eyeBase = 0.05, focusDistance = 1; // see SessionConfig
     Tiling tiling = Tiling::Exact;
+    CullingMode culling = CullingMode::Off;
     std::string glBackend = "auto";
     std::string gpu;               // name of its GPU (nodes/gl/gpu_choice.hpp); empty: by turn
     int gpuTurn = 0, gpuTurns = 1; // its number among the nodes of its machine that divide the GPUs; 1: the first GPU

@@ -75,6 +75,31 @@ std::string uncomparedText(const SessionReport& r) {
                        reasons.empty() ? "" : " (" + reasons + ")");
 }
 
+// "culling: 62 % of 1200 vertices left out; not examined: first uses 200, client memory 12"
+std::vector<std::string> cullingLines(const SessionReport& r) {
+    CullingReport sum;
+    for (const NodeReport& n : r.nodes) {
+        sum.isOn = sum.isOn || n.culling.isOn;
+        sum.verticesLeftOut += n.culling.verticesLeftOut;
+        sum.verticesDrawn += n.culling.verticesDrawn;
+        sum.audits += n.culling.audits;
+        sum.faults += n.culling.faults;
+        for (const auto& [reason, vertices] : n.culling.verticesUnexamined) sum.verticesUnexamined[reason] += vertices;
+    }
+    if (!sum.isOn) return {};
+    const int64_t all = sum.verticesLeftOut + sum.verticesDrawn;
+    std::string line = fmt::format(
+        "culling: {:.0f} % of {} vertices left out",
+        100.0 * static_cast<double>(sum.verticesLeftOut) / std::max(1.0, 1.0 * static_cast<double>(all)), all);
+    if (!sum.verticesUnexamined.empty()) line += "; not examined: " + roundTripText(sum.verticesUnexamined);
+    std::vector<std::string> lines{line};
+    if (sum.audits > 0)
+        lines.push_back(fmt::format(
+            "culling audit: {} draw{} left out in all or in part, {} of them with samples in the node's tiles",
+            sum.audits, plural(sum.audits), sum.faults));
+    return lines;
+}
+
 } // namespace
 
 std::vector<std::string> reportLines(const SessionReport& r) {
@@ -110,6 +135,7 @@ std::vector<std::string> reportLines(const SessionReport& r) {
         lines.push_back(fmt::format("pictures: {} per frame, compressed to {}",
                                     sizeText(raw / static_cast<double>(r.frames)),
                                     sizeText(packed / static_cast<double>(r.frames))));
+    for (std::string& line : cullingLines(r)) lines.push_back(std::move(line));
     for (const EqualizerReport& e : r.equalizers) {
         if (e.frames == 0) continue;
         if (e.divides == "frames") {

@@ -95,6 +95,16 @@ std::map<std::string, int64_t> countsFrom(const Json& j, const char* name) {
     return counts;
 }
 
+CullingReport cullingFrom(const Json& j) {
+    if (!j.is_object()) return {};
+    return {true,
+            whole(j, "verticesLeftOut"),
+            whole(j, "verticesDrawn"),
+            countsFrom(j, "verticesUnexamined"),
+            whole(j, "audits"),
+            whole(j, "faults")};
+}
+
 SessionReport reportFrom(const Json& j) {
     SessionReport r;
     r.frames = whole(j, "frames");
@@ -125,7 +135,7 @@ SessionReport reportFrom(const Json& j) {
             r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost"),
                                swapsFrom(swaps != n.end() ? *swaps : Json()), whole(n, "joins"),
                                real(n, "secondsToRejoin"), real(n, "snapshotBytes"), real(n, "pictureBytes"),
-                               real(n, "pictureRawBytes")});
+                               real(n, "pictureRawBytes"), cullingFrom(n.value("culling", Json()))});
         }
     }
     return r;

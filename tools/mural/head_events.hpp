@@ -17,6 +17,14 @@ struct SwapReport {
     double medianNs = 0, p99Ns = 0, maxNs = 0, clockErrorNs = 0;
 };
 
+// Vertices that a node left out (docs/architecture/culling.md).
+struct CullingReport {
+    bool isOn = false;
+    int64_t verticesLeftOut = 0, verticesDrawn = 0;
+    std::map<std::string, int64_t> verticesUnexamined; // by reason; they also count as drawn
+    int64_t audits = 0, faults = 0;
+};
+
 struct NodeReport {
     int64_t node = 0;
     int64_t frames = 0;
@@ -26,6 +34,7 @@ struct NodeReport {
     int64_t joins = 0; // number of returns; the next two describe the last one
     double secondsToRejoin = 0, snapshotBytes = 0;
     double pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
+    CullingReport culling;
 };
 
 // Savings by the filter and delta coding.

@@ -194,6 +194,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.eyeBase = config.eyeBase;
     setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;
+    setup.culling = config.culling;
     setup.glBackend = config.glBackend;
     setup.sendPictures = headTakesPictures(config, plan);
     setup.wallWindows = showsWall(config, plan, node);

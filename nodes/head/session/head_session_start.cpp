@@ -32,6 +32,17 @@ const char* explainTiling(Tiling tiling) {
            "those of a single machine";
 }
 
+const char* explainCulling(CullingMode culling) {
+    switch (culling) {
+    case CullingMode::Auto: return "culling auto: nodes leave out vertices that cannot touch their tiles";
+    case CullingMode::Audit:
+        return "culling audit: nodes count the samples of all vertices that they leave out; one in a node's tiles is "
+               "a fault";
+    case CullingMode::Off: break;
+    }
+    return "culling off: every node processes all vertices";
+}
+
 bool hasOtherLayouts(const SessionPlan& plan) {
     return plan.balance && std::ranges::any_of(plan.balance->config.canvases,
                                                [](const auto& canvas) { return canvas.layouts.size() > 1; });
@@ -358,6 +369,7 @@ std::vector<std::string> HeadSession::explainLines() {
                             " nodes show each frame together: swap barrier \"" + node.swapBarrier +
                             "\", leader: node " + std::to_string(node.node));
     lines.push_back(explainTiling(config_.tiling));
+    lines.push_back(explainCulling(config_.culling));
     if (!streamLine_.empty()) lines.push_back(streamLine_);
     lines.push_back(deltaLine_);
     lines.push_back("threads of the head: " + placement_);

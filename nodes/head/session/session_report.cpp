@@ -36,6 +36,37 @@ Json sharedDrawsJson(const SharedDraws& draws) {
 
 double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<double>(kNsPerS); }
 
+void readCulling(const Json& json, CullingTotals& c) {
+    c = {true,
+         wholeOf(json, "drawsLeftOut"),
+         wholeOf(json, "drawsCut"),
+         wholeOf(json, "drawsWhole"),
+         wholeOf(json, "verticesLeftOut"),
+         wholeOf(json, "verticesDrawn"),
+         {},
+         wholeOf(json, "boxBytes"),
+         wholeOf(json, "audits"),
+         wholeOf(json, "faults")};
+    const auto reasons = json.find("verticesUnexamined");
+    if (reasons == json.end() || !reasons->is_object()) return;
+    for (const auto& [reason, vertices] : reasons->items())
+        c.verticesUnexamined[reason] = wholeOf(*reasons, reason.c_str());
+}
+
+// Null: culling is off.
+Json cullingJson(const CullingTotals& c) {
+    if (!c.isOn) return nullptr;
+    return {{"drawsLeftOut", c.drawsLeftOut},
+            {"drawsCut", c.drawsCut},
+            {"drawsWhole", c.drawsWhole},
+            {"verticesLeftOut", c.verticesLeftOut},
+            {"verticesDrawn", c.verticesDrawn},
+            {"verticesUnexamined", c.verticesUnexamined},
+            {"boxBytes", c.boxBytes},
+            {"audits", c.audits},
+            {"faults", c.faults}};
+}
+
 } // namespace
 
 void readGoodbye(const std::string& text, NodeTotals& totals) {
@@ -50,6 +81,7 @@ void readGoodbye(const std::string& text, NodeTotals& totals) {
     if (const auto swaps = json.find("swapBarrier"); swaps != json.end() && swaps->is_object())
         totals.swaps = {wholeOf(*swaps, "members"), wholeOf(*swaps, "swaps"), wholeOf(*swaps, "medianNs"),
                         wholeOf(*swaps, "p99Ns"),   wholeOf(*swaps, "maxNs"), wholeOf(*swaps, "clockErrorNs")};
+    if (const auto c = json.find("culling"); c != json.end() && c->is_object()) readCulling(*c, totals.culling);
     const auto seconds = json.find("cpuSeconds");
     if (seconds != json.end() && seconds->is_number()) totals.cpuSeconds = seconds->get<double>();
 }
@@ -173,6 +205,7 @@ Json reportOf(const SessionNumbers& n) {
                          {"pictureBytes", node.pictureBytes},
                          {"pictureRawBytes", node.pictureRawBytes},
                          {"swapBarrier", swapJson(node.swaps)},
+                         {"culling", cullingJson(node.culling)},
                          {"lost", node.lost},
                          {"joins", node.joins},
                          {"snapshotBytes", node.snapshotBytes},

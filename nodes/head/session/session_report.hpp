@@ -25,6 +25,16 @@ struct SwapTotals {
     int64_t clockErrorNs = 0;
 };
 
+// Vertices that a node did not draw, because they cannot touch its area.
+struct CullingTotals {
+    bool isOn = false;
+    int64_t drawsLeftOut = 0, drawsCut = 0, drawsWhole = 0;
+    int64_t verticesLeftOut = 0, verticesDrawn = 0;
+    std::map<std::string, int64_t> verticesUnexamined; // by reason; they also count as drawn
+    int64_t boxBytes = 0;                              // largest memory of the boxes
+    int64_t audits = 0, faults = 0;                    // audited draws, and those of which a sample was in the area
+};
+
 struct NodeTotals {
     int node = 0;
     int64_t frames = 0;
@@ -37,6 +47,7 @@ struct NodeTotals {
     int64_t exchangeBytes = 0;                     // picture bytes sent to other nodes
     int64_t pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
     SwapTotals swaps;
+    CullingTotals culling;
     bool lost = false;
     int64_t joins = 0;          // number of returns
     int64_t snapshotBytes = 0;  // at the last return: size of the snapshot…

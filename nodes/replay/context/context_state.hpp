@@ -25,6 +25,8 @@
 
 namespace mural::replay {
 
+struct ContextCulling;
+
 struct Scissor {
     bool enabled = false;
     PixelViewport box;
@@ -167,7 +169,8 @@ struct ContextState {
     bool rangeFeedsBack = false; // transform feedback is active
     int activeQueries = 0;
     bool inPrimitive = false;
-    bool projectionKnown = false; // fixedProjection is current, for shaders that may read it
+    std::shared_ptr<ContextCulling> culling; // null: nothing examined yet
+    bool projectionKnown = false;            // fixedProjection is current, for shaders that may read it
     ProjectionDetector fixedProjection;
     std::array<GLfloat, 16> onProjection{}, shiftedProjection{};
 };

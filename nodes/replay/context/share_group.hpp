@@ -10,6 +10,7 @@
 #include "gl_functions.hpp"
 #include "nodes/replay/engine/handle_table.hpp"
 #include "nodes/replay/engine/name_table.hpp"
+#include "nodes/replay/features/culling_state.hpp"
 #include "nodes/replay/features/projection_detection.hpp"
 #include "nodes/replay/programs/program_rewriter.hpp"
 #include "nodes/replay/programs/program_sources.hpp"
@@ -66,6 +67,7 @@ struct ShareGroup {
     std::unordered_map<GLuint, bool> primitiveIds;
     // by the program's name, after its first use (features/draw_skipping.cpp)
     std::unordered_map<GLuint, bool> memoryWriters;
+    CullingGroup culling;
     ProjectionDetector projection;        // the last one found in any buffer
     std::shared_ptr<AsyncReadback> later; // null: unavailable, or not requested yet
     bool asyncTried = false;              // creation was tried once

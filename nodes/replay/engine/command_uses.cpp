@@ -1,6 +1,9 @@
 #include "nodes/replay/engine/command_uses.hpp"
 
+#include "streamcodec/command_effects.hpp"
 #include "streamcodec/command_traits.hpp"
+
+#include <GL/gl.h>
 
 namespace mural {
 
@@ -41,6 +44,128 @@ WholeUse wholeUseOf(uint16_t opcode) {
     if (hasTrait(opcode, TextureLevels)) return WholeUse::Levels;
     if (hasTrait(opcode, TextureAnyLevel)) return WholeUse::AllLevels;
     return hasTrait(opcode, TextureParameter) ? WholeUse::Parameter : WholeUse::None;
+}
+
+namespace {
+
+// Cells without any of these bits hold state on which no position and no width depends.
+constexpr uint32_t kRasterBits =
+    kNoAttribBit | GL_VIEWPORT_BIT | GL_LINE_BIT | GL_POINT_BIT | GL_POLYGON_BIT | GL_TRANSFORM_BIT | GL_ENABLE_BIT;
+
+CullUse cullUseOfBind(ObjectType object) {
+    switch (object) {
+    case ObjectType::VertexArray: return CullUse::VertexArray;
+    case ObjectType::Buffer: return CullUse::IndexBuffer;
+    default: return CullUse::None;
+    }
+}
+
+} // namespace
+
+CullUse cullUseOf(uint16_t opcode) {
+    const CommandEffect& effect = effectOf(opcode);
+    switch (effect.kind) {
+    case EffectKind::Draw: return CullUse::Draw;
+    case EffectKind::MatrixLoad:
+    case EffectKind::MatrixChange:
+    case EffectKind::MatrixPush:
+    case EffectKind::MatrixPop: return CullUse::Matrices;
+    case EffectKind::Cell:
+    case EffectKind::Limit:
+        return effect.attribBits == 0 || (effect.attribBits & kRasterBits) ? CullUse::Raster : CullUse::None;
+    case EffectKind::Cap: return CullUse::Cap;
+    case EffectKind::ClientCap:
+    case EffectKind::ArrayPointer:
+    case EffectKind::ArraySet:
+    case EffectKind::ArrayNamedSet:
+    case EffectKind::ClientPush:
+    case EffectKind::ClientPop: return CullUse::Arrays;
+    case EffectKind::Bind: return cullUseOfBind(effect.object);
+    case EffectKind::BufferData:
+    case EffectKind::BufferSubData:
+        return effect.object == ObjectType::Buffer ? CullUse::NamedContents : CullUse::BoundContents;
+    case EffectKind::BufferOther:
+    case EffectKind::BufferPages:
+    case EffectKind::Compute:
+    case EffectKind::FeedbackBegin:
+    case EffectKind::FeedbackEnd: return CullUse::AllContents;
+    case EffectKind::Delete:
+        return effect.object == ObjectType::Buffer || effect.object == ObjectType::VertexArray ? CullUse::DeletedBuffers
+                                                                                               : CullUse::None;
+    case EffectKind::UseProgram: return CullUse::Program;
+    case EffectKind::ProgramLink:
+    case EffectKind::ProgramDelete:
+    case EffectKind::Create: return CullUse::Link;
+    case EffectKind::Uniform:
+    case EffectKind::ProgramUniform: return CullUse::Uniforms;
+    case EffectKind::AttribPop: return CullUse::Pops;
+    case EffectKind::CallList:
+    case EffectKind::CallLists: return CullUse::List;
+    case EffectKind::Begin: return CullUse::Immediate;
+    case EffectKind::ReadsPicture: return CullUse::ReadsPicture;
+    // State on which neither a position nor the contents of an array depends.
+    case EffectKind::Nothing:
+    case EffectKind::CellOfMatrix:
+    case EffectKind::CellOfAll:
+    case EffectKind::UnitCell:
+    case EffectKind::UnitCellOfMatrix:
+    case EffectKind::ClientCell:
+    case EffectKind::Attribute:
+    case EffectKind::Color:
+    case EffectKind::PatternedCell:
+    case EffectKind::ActiveTexture:
+    case EffectKind::ClientActiveTexture:
+    case EffectKind::MatrixMode:
+    case EffectKind::ListBase:
+    case EffectKind::AttribPush:
+    case EffectKind::Gen:
+    case EffectKind::GenLists:
+    case EffectKind::DeleteList:
+    case EffectKind::BindIndexed:
+    case EffectKind::TexParameter:
+    case EffectKind::TexImage:
+    case EffectKind::TexStorage:
+    case EffectKind::TexSubImage:
+    case EffectKind::TexCopyImage:
+    case EffectKind::TexCopySubImage:
+    case EffectKind::TexMipmaps:
+    case EffectKind::TexBuffer:
+    case EffectKind::TexView:
+    case EffectKind::RenderbufferStorage:
+    case EffectKind::NamedSet:
+    case EffectKind::FramebufferAttach:
+    case EffectKind::FramebufferSet:
+    case EffectKind::FramebufferNamed:
+    case EffectKind::DrawBuffers:
+    case EffectKind::ShaderSet:
+    case EffectKind::ShaderCompile:
+    case EffectKind::ShaderDelete:
+    case EffectKind::ProgramAttach:
+    case EffectKind::ProgramDetach:
+    case EffectKind::ProgramSet:
+    case EffectKind::PipelineSet:
+    case EffectKind::ArbProgram:
+    case EffectKind::SyncMake:
+    case EffectKind::SyncDelete:
+    case EffectKind::Handle:
+    case EffectKind::HandleResident:
+    case EffectKind::TexPages:
+    case EffectKind::Clear:
+    case EffectKind::ClearBuffer:
+    case EffectKind::Blit:
+    case EffectKind::Barrier:
+    case EffectKind::Vertex:
+    case EffectKind::End:
+    case EffectKind::NewList:
+    case EffectKind::EndList:
+    case EffectKind::QueryBegin:
+    case EffectKind::QueryEnd:
+    case EffectKind::ConditionalEnd: return CullUse::None;
+    case EffectKind::QueryCounter:
+    case EffectKind::Unknown:
+    case EffectKind::UnknownNames: break;
+    }
+    return CullUse::Everything;
 }
 
 } // namespace mural

@@ -25,4 +25,29 @@ enum class WholeUse : uint8_t {
 };
 WholeUse wholeUseOf(uint16_t opcode);
 
+// Culling (features/culling.cpp): what a command may change.
+enum class CullUse : uint8_t {
+    None,
+    Draw,
+    Matrices,
+    Raster,         // viewport, widths, modes
+    Cap,            // enables or disables its first argument
+    Arrays,         // layout of vertex arrays
+    VertexArray,    // the current vertex array
+    IndexBuffer,    // perhaps the index buffer: the first argument is a target
+    BoundContents,  // contents of the buffer bound to the first argument
+    NamedContents,  // contents of the buffer that the first argument names
+    AllContents,    // contents of any buffer
+    DeletedBuffers, // contents and layouts
+    Program,        // the current program
+    Link,           // any program
+    Uniforms,
+    Pops,         // state of the context
+    List,         // executes a display list
+    Immediate,    // begins a primitive
+    ReadsPicture, // perhaps into a buffer
+    Everything
+};
+CullUse cullUseOf(uint16_t opcode);
+
 } // namespace mural

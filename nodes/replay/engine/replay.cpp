@@ -20,6 +20,9 @@ Replay::Replay(std::unique_ptr<gl::Platform> platform, PlayerConfig config, Play
     knowsTurns_ = knowsCosts_ = knowsAreas_ = !config_.isResyncing;
     if (config_.areas) areas_ = std::make_shared<const ViewportAssignment>(*config_.areas);
     hasSkipped_ = skips_ = maySkip();
+    if (config_.culling != CullingMode::Off && !config_.lean)
+        culling_ = std::make_unique<replay::Culling>(config_.culling, config_.plant);
+    counts_.culling.isOn = culling_ != nullptr;
 }
 
 Replay::~Replay() {
@@ -80,7 +83,10 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
         return ok;
     }
     if (takesRanges() && (opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow)) composeBound();
-    if (opcode < wire::kFirstGlOpcode) return own(opcode, in);
+    if (opcode < wire::kFirstGlOpcode) {
+        if (culling_) onCullingRecord(opcode, arguments);
+        return own(opcode, in);
+    }
     const ReplayFunction function = replayFunction(opcode);
     if (!function) return false;
     if (c_ == none_.get()) return true; // GL without a context does nothing
@@ -94,6 +100,11 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     // after onRange(), which decides whether this node draws the command
     const bool skips = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && shouldSkipDraw(opcode);
     if (moves()) onArea(opcode, arguments);
+    if (culling_ && bound_) {
+        onCulling(opcode, arguments);
+        if (!skips && !c_->compiling && hasTrait(opcode, Trait::SkippableDraw) && cullDraw(opcode, arguments))
+            return true;
+    }
     if (skips) swapDrawEntryPoints();
     const bool done = hasTrait(opcode, Trait::Allocates) ? executeAllocating(function, in) : function(*this, in);
     if (skips) swapDrawEntryPoints();

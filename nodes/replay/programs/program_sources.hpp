@@ -50,6 +50,11 @@ public:
     void deleted(const GlFunctions& gl, GLuint shaderOrProgram);
     // Returns the recipe of the last successful link; empty: none, or unsupported.
     [[nodiscard]] std::vector<std::byte> of(GLuint program) const;
+    // Returns the same as a structure; null: none.
+    [[nodiscard]] const ProgramSources* sourcesOf(GLuint program) const {
+        const auto known = programs_.find(program);
+        return known == programs_.end() || !known->second.last ? nullptr : &*known->second.last;
+    }
 
 private:
     struct Shader {

@@ -24,18 +24,25 @@ def effect_of(c):
 OWNERS = {'ArrayNamedSet': 'vertex array', 'PipelineSet': 'program pipeline'}
 IMAGE_EFFECTS = ('TexImage', 'TexStorage', 'TexSubImage', 'TexCopyImage', 'TexCopySubImage')
 # Members of DrawWords, by the parameter whose position they hold.
-DRAW_WORDS = {'count': 'count', 'first': 'first', 'type': 'type', 'indices': 'indices', 'instancecount': 'instances'}
+DRAW_WORDS = {'count': 'count', 'first': 'first', 'type': 'type', 'indices': 'indices', 'instancecount': 'instances', 'basevertex': 'base'}
 
 
-def words_of(c):
-    """Returns {parameter name: word of the record}, up to the first value of variable size."""
+OFFSET_WORDS = 3  # a tag, and an offset of 64 bits
+
+
+def words_of(c, offsets=False):
+    """Returns {parameter name: word of the record}, up to the first value of variable size; offsets: as if such values
+    were offsets into buffers."""
     words, at = {}, 0
     for p in c.params:
         if p.how == 'skip':
             continue
         words[p.name] = at
         if p.how in DATA_KINDS:
-            break
+            if not offsets:
+                break
+            at += OFFSET_WORDS
+            continue
         if p.how == 'fixed':
             at += (p.expr + 3) // 4
         else:
@@ -69,7 +76,7 @@ def details_of(c):
     if kind in IMAGE_EFFECTS and dimensions_of(c) > 1:
         yield 'dimensions', dimensions_of(c)
     if c.option('vertices') == 'divisible':
-        words = words_of(c)
+        words = words_of(c, offsets=True)
         places = ['.%s = %d' % (member, words[name]) for name, member in DRAW_WORDS.items() if name in words]
         yield 'draw', '{%s}' % ', '.join(places)
 

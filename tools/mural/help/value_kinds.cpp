@@ -71,6 +71,7 @@ constexpr char kConfigFiles[] = "*.eqc";
 // Options whose values need more than the name of the value.
 const OptionKind kOptions[] = {
     {"", "--display", [] { return wordsOnly(namesOf(kDisplayChoices)); }},
+    {"", "--culling", [] { return wordsOnly(namesOf(kCullingChoices)); }},
     {"", "--tiling", [] { return wordsOnly(namesOf(kTilingChoices)); }},
     {"", "--local-rendering", [] { return wordsOnly(namesOf(kLocalRenderingChoices)); }},
     {"", "--delta", [] { return wordsOnly(namesOf(kDeltaChoices)); }},

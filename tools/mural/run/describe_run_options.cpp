@@ -77,6 +77,11 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
                     "output of the wall: app (the program's own window), windows (one per tile), none")
         ->type_name("WHERE");
     command
+        .add_option("--culling", a.culling,
+                    "auto: a node leaves out vertices that cannot touch its tiles; audit: it also counts the samples "
+                    "of everything that it leaves out, and the run fails if one is in its tiles; off (off)")
+        ->type_name("HOW");
+    command
         .add_option("--local-rendering", a.localRendering,
                     "off: the program's own GL draws nothing; on: it draws too (off)")
         ->type_name("WHAT");

@@ -12,6 +12,8 @@ inline constexpr Choice<Display> kDisplayChoices[] = {
     {"app", Display::App}, {"windows", Display::Windows}, {"none", Display::None}};
 inline constexpr Choice<Tiling> kTilingChoices[] = {
     {"exact", Tiling::Exact}, {"culled", Tiling::Culled}, {"lean", Tiling::Lean}};
+inline constexpr Choice<CullingMode> kCullingChoices[] = {
+    {"off", CullingMode::Off}, {"auto", CullingMode::Auto}, {"audit", CullingMode::Audit}};
 inline constexpr Choice<LocalRendering> kLocalRenderingChoices[] = {{"off", LocalRendering::Off},
                                                                     {"on", LocalRendering::On}};
 inline constexpr Choice<DeltaMode> kDeltaChoices[] = {

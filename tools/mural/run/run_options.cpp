@@ -27,6 +27,7 @@ Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     const char* backend = "auto";
     if (auto r = choose("--display", a.display, kDisplayChoices, c.display); !r) return r;
     if (auto r = choose("--tiling", a.tiling, kTilingChoices, c.tiling); !r) return r;
+    if (auto r = choose("--culling", a.culling, kCullingChoices, c.culling); !r) return r;
     if (auto r = choose("--local-rendering", a.localRendering, kLocalRenderingChoices, c.localRendering); !r) return r;
     if (auto r = choose("--gl", a.gl, kGlChoices, backend); !r) return r;
     if (auto r = choose("--delta", a.delta, kDeltaChoices, c.delta); !r) return r;

@@ -33,9 +33,9 @@ struct RunOptions {
 
 // Raw texts of the command line, validated by runOptionsFrom().
 struct RunArguments {
-    OptionText tiles, tileQueue, chunkQueue, balance, size, position, nodes, out, save, display, tiling, localRendering,
-        gl, gpus, launch, stream, hostFile, perHost, startTimeout, launchSecret, slurm, remoteMural, nodeProgram,
-        captureVia, restartNodes, minNodes, spareNodes;
+    OptionText tiles, tileQueue, chunkQueue, balance, size, position, nodes, out, save, display, tiling, culling,
+        localRendering, gl, gpus, launch, stream, hostFile, perHost, startTimeout, launchSecret, slurm, remoteMural,
+        nodeProgram, captureVia, restartNodes, minNodes, spareNodes;
     OptionText config, canvas, projection, modelUnit, delta, cacheSize;
     std::vector<std::string> layouts;
     bool allLocal = false, printConfig = false;

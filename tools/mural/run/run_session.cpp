@@ -31,7 +31,9 @@ constexpr int64_t kExaminationMs = 10'000;
 constexpr int64_t kUncapturedMs = 1'000;
 // Permitted silence of the head after the program's end, while it drains and writes pictures.
 constexpr int64_t kFinishSilenceMs = 120'000;
-constexpr int kWallLost = 1; // exit status, whatever the ended program's status is
+// Exit statuses, whatever the ended program's status is.
+constexpr int kWallLost = 1;
+constexpr int kAuditFailed = 1; // --culling audit: a node left out a sample of its area
 
 class Session {
 public:
@@ -52,7 +54,7 @@ public:
         uncapturedAt_ = Deadline::inMs(kUncapturedMs);
         whileRunning();
         finish();
-        return endRequested_ ? 0 : wallLost_ ? kWallLost : program_.exitStatus();
+        return endRequested_ ? 0 : wallLost_ ? kWallLost : auditFailed() ? kAuditFailed : program_.exitStatus();
     }
 
 private:
@@ -137,6 +139,10 @@ private:
             }
         }
         if (report_) printReport();
+    }
+
+    [[nodiscard]] bool auditFailed() const {
+        return report_ && std::ranges::any_of(report_->nodes, [](const NodeReport& n) { return n.culling.faults > 0; });
     }
 
     void printReport() {

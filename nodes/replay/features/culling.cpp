@@ -1,0 +1,304 @@
+// Leaves out draws, and clusters of draws, that cannot touch this node's area.
+//
+// Anything that is not proven is drawn. The rules follow from experiments (docs/architecture/culling.md): which draws a
+// driver may be spared without a change of any other pixel.
+#include "nodes/replay/features/culling.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "nodes/replay/engine/command_uses.hpp"
+#include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/command_effects.hpp"
+#include "streamcodec/command_traits.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/record.hpp"
+
+namespace mural {
+
+namespace {
+
+using culling::WhyWhole;
+
+// Pixels between the edge of the area and the planes: rounding of positions to subpixels, and drivers that draw a row
+// of pixels beyond the scissor.
+constexpr double kMarginPixels = 2;
+// After this number of draws in a row from which nothing was left out, clusters are not tried for some draws.
+constexpr uint32_t kVainDraws = 8, kLeastPause = 64, kLongestPause = 4096;
+// A planted fault: planes inside of the area.
+constexpr double kPlantedMargin = -40;
+
+uint32_t cullWord(std::span<const std::byte> bytes, size_t index) {
+    uint32_t word = 0;
+    if (bytes.size() >= 4 * (index + 1)) std::memcpy(&word, bytes.data() + 4 * index, 4);
+    return word;
+}
+
+bool isPoint(GLenum mode) { return mode == GL_POINTS; }
+bool isLine(GLenum mode) { return mode >= GL_LINES && mode <= GL_LINE_STRIP; }
+
+double marginOf(GLenum mode, const replay::CullingState::RasterState& raster) {
+    if (isPoint(mode)) return raster.pointSize / 2 + kMarginPixels;
+    if (isLine(mode)) return raster.lineWidth / 2 + kMarginPixels;
+    if (raster.drawsEdges) return std::max(raster.pointSize, raster.lineWidth) / 2 + kMarginPixels;
+    return kMarginPixels;
+}
+
+// Reads the record of a draw. Returns nothing for other commands, and for indices in client memory.
+std::optional<replay::CullingDraw> cullingDrawOf(uint16_t opcode, std::span<const std::byte> arguments) {
+    const DrawWords& words = effectOf(opcode).draw;
+    if (words.count == 0) return std::nullopt;
+    replay::CullingDraw draw;
+    draw.mode = cullWord(arguments, 0);
+    const auto count = static_cast<int32_t>(cullWord(arguments, words.count));
+    draw.count = count > 0 ? static_cast<uint64_t>(count) : 0;
+    if (words.instances > 0) draw.instances = cullWord(arguments, words.instances);
+    if (words.first > 0) draw.first = static_cast<int32_t>(cullWord(arguments, words.first));
+    if (words.base > 0) draw.first = static_cast<int32_t>(cullWord(arguments, words.base));
+    if (words.indices == 0) return draw;
+    draw.indexType = cullWord(arguments, words.type);
+    if (cullWord(arguments, words.indices) != record::kTagOffset || arguments.size() < 4 * (words.indices + size_t{3}))
+        return std::nullopt;
+    std::memcpy(&draw.indexOffset, arguments.data() + 4 * (words.indices + size_t{1}), 8);
+    return draw;
+}
+
+} // namespace
+
+replay::ContextCulling& Replay::cullingOf(ContextState& c) {
+    if (c.culling) return *c.culling;
+    c.culling = std::make_shared<replay::ContextCulling>();
+    c.culling->state.facts.isCore = c.core;
+    c.culling->state.facts.version = c.version;
+    return *c.culling;
+}
+
+// Records what a command may change. Called before its execution.
+void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
+    if (!c_->shared) return;
+    replay::CullingState& state = cullingOf(*c_).state;
+    replay::CullingGroup& group = c_->shared->culling;
+    using State = replay::CullingState;
+    const bool seesContents = !culling_->plantsContents;
+    switch (cullUseOf(opcode)) {
+    case CullUse::None: break;
+    case CullUse::Draw:
+        // Rectangles and meshes are primitives of glBegin in the driver.
+        state.hasPendingPrimitives = state.hasPendingPrimitives || !hasTrait(opcode, Trait::SkippableDraw);
+        onCulledMemory();
+        break;
+    case CullUse::Matrices: state.changed(State::Matrices); break;
+    case CullUse::Raster: state.changed(State::Raster); break;
+    case CullUse::Cap:
+        group.capSeen(cullWord(arguments, 0));
+        if (group.hasSeen(cullWord(arguments, 0))) state.changed(State::Raster);
+        break;
+    case CullUse::Arrays: state.changed(State::Arrays); break;
+    case CullUse::VertexArray: state.changed(State::VertexArray); break;
+    case CullUse::IndexBuffer:
+        if (cullWord(arguments, 0) == GL_ELEMENT_ARRAY_BUFFER) state.changed(State::IndexBuffer);
+        break;
+    case CullUse::BoundContents:
+        if (!seesContents) break;
+        if (cullWord(arguments, 0) == GL_ARRAY_BUFFER)
+            group.bufferChanged(c_->arrayBuffer);
+        else if (cullWord(arguments, 0) == GL_ELEMENT_ARRAY_BUFFER && bound_)
+            group.bufferChanged(state.indexBuffer(gl));
+        else
+            group.anyBufferChanged();
+        break;
+    case CullUse::NamedContents:
+        if (seesContents) group.bufferChanged(name(Kind::Buffer, cullWord(arguments, 0)));
+        break;
+    case CullUse::ReadsPicture:
+        if (c_->packBuffer) group.anyBufferChanged();
+        break;
+    case CullUse::AllContents: group.anyBufferChanged(); break;
+    case CullUse::DeletedBuffers:
+        group.anyBufferChanged();
+        state.changed(State::Arrays);
+        break;
+    case CullUse::Program: state.changed(State::Program); break;
+    case CullUse::Link: ++group.links; break;
+    case CullUse::Uniforms: ++group.uniforms; break;
+    case CullUse::Pops:
+    case CullUse::List:
+        state.changed(State::Matrices | State::Raster | State::Program);
+        state.hasPendingPrimitives = true;
+        onCulledMemory();
+        break;
+    case CullUse::Immediate:
+        state.hasPendingPrimitives = true;
+        onCulledMemory();
+        break;
+    case CullUse::Everything:
+        state.changed(State::All);
+        group.anyBufferChanged();
+        ++group.links;
+        ++group.uniforms;
+        break;
+    }
+}
+
+// Called for draws, whose shaders may write to buffers.
+void Replay::onCulledMemory() {
+    if ((c_->program != 0 || c_->pipelineBound) && mayWriteMemory(c_->program)) c_->shared->culling.anyBufferChanged();
+}
+
+// Control records that change contents, arrays or programs.
+void Replay::onCullingRecord(uint16_t opcode, std::span<const std::byte> arguments) {
+    if (!c_->shared) return;
+    replay::ContextCulling& its = cullingOf(*c_);
+    switch (opcode) {
+    case wire::kOpBlobBegin:
+    case wire::kOpBlobData:
+    case wire::kOpSwap:
+    case wire::kOpFrontPicture:
+    case wire::kOpRequestPixels:
+    case wire::kOpRequestTexImage:
+    case wire::kOpRequestBuffer:
+    case wire::kOpRequestQuery:
+    case wire::kOpRequestProgram:
+    case wire::kOpMakeCurrent:
+    case wire::kOpWindow:
+    case wire::kOpFinish:
+    case wire::kOpErrorReported: break;
+    case wire::kOpClientArrays: its.state.changed(replay::CullingState::Arrays); break;
+    case wire::kOpBufferBytes:
+        if (!culling_->plantsContents) c_->shared->culling.bufferChanged(name(Kind::Buffer, cullWord(arguments, 0)));
+        break;
+    default:
+        its.state.changed(replay::CullingState::All);
+        c_->shared->culling.anyBufferChanged();
+        ++c_->shared->culling.links;
+        ++c_->shared->culling.uniforms;
+    }
+}
+
+// Returns why the next draw is drawn whole, from the state of window and context.
+WhyWhole Replay::whyUnexamined(uint16_t opcode, const std::optional<replay::CullingDraw>& draw) {
+    const bool isShader = c_->program != 0 || c_->pipelineBound;
+    if (!drawsWindow()) return WhyWhole::FramebufferObject;
+    if (isReplicatedDraw() || !c_->draw || !c_->shared || c_->draw->drawn.empty()) return WhyWhole::Replicated;
+    if (drawsLean() || movesPicture() || movesView() || takesRanges() || drawsOtherPixels())
+        return WhyWhole::MovedPicture;
+    if (c_->draw->isFlat || c_->draw->config.depth + c_->draw->config.stencil == 0) return WhyWhole::NoDepth;
+    if (c_->api != wire::Api::Desktop || !gl.glGetBufferSubData) return WhyWhole::Es;
+    if (!c_->openQueries.empty() || c_->feedsBack) return WhyWhole::OpenQuery;
+    if (c_->pipelineBound || (isShader && mayWriteMemory(c_->program))) return WhyWhole::Memory;
+    if (stipplesLines()) return WhyWhole::Stipple;
+    if (!draw) return effectOf(opcode).draw.count > 0 ? WhyWhole::ClientMemory : WhyWhole::Command;
+    if (draw->mode > GL_POLYGON) return WhyWhole::Command;
+    return WhyWhole::None;
+}
+
+// Whether the rules allow parts of the draw. All forms with clusters, in a window with a depth buffer, gave equal
+// pixels in clusters; other modes have none.
+bool Replay::canCut(const replay::CullingDraw& draw, const replay::CullingProgram* program,
+                    const replay::CullingState::RasterState& raster) const {
+    const bool restarts = draw.indexType != 0 && (raster.restarts || raster.restartsAtLargest);
+    return draw.instances == 1 && !restarts && (!program || program->mayCut);
+}
+
+// The planes of the current view and area; null: the view is not linear.
+const culling::TilePlanes* Replay::planesFor(GLenum mode, replay::CullingProgram* program,
+                                             std::span<const replay::CullingArray> arrays) {
+    replay::ContextCulling& its = cullingOf(*c_);
+    replay::CullingPlanes& known = its.planes;
+    const replay::CullingGroup& group = c_->shared->culling;
+    const auto& raster = its.state.raster(gl, group);
+    const GLuint nodeName = program ? name(Kind::Program, c_->program) : 0;
+    if (!c_->core) (void)its.state.matrices(gl);
+    size_t components = 0; // with those of each array in a digit of its own
+    for (const replay::CullingArray& array : arrays)
+        components = components * 8 + static_cast<size_t>(array.components);
+    const bool isKnownView = known.view == its.state.matricesNumber() && known.program == nodeName &&
+                             known.components == components &&
+                             (!program || (known.uniforms == group.uniforms && known.links == group.links));
+    const double margin = culling_->plantsMargin ? kPlantedMargin : marginOf(mode, raster);
+    const bool isKnownArea =
+        known.raster == its.state.rasterNumber() && known.area == c_->draw->drawn && known.margin == margin;
+    if (isKnownView && isKnownArea) return known.planes ? &*known.planes : nullptr;
+    std::optional<culling::LinearView> before = std::move(known.linear);
+    known.linear = isKnownView ? before : linearView(nodeName, program, arrays);
+    known.program = nodeName;
+    known.view = its.state.matricesNumber();
+    known.raster = its.state.rasterNumber();
+    known.uniforms = group.uniforms;
+    known.links = group.links;
+    known.components = components;
+    known.area = c_->draw->drawn;
+    known.margin = margin;
+    known.planes.reset();
+    if (!known.linear) return nullptr;
+    const bool usesOldView = culling_->plantsMatrix && before && before->inputs == known.linear->inputs;
+    known.planes.emplace(usesOldView ? *before : *known.linear, raster.viewport, known.area, margin);
+    return &*known.planes;
+}
+
+// Decides a draw. On Cut::Ranges, culling_->ranges has the kept parts.
+culling::Cut Replay::cutOf(const replay::CullingDraw& draw, WhyWhole& why) {
+    replay::ContextCulling& its = cullingOf(*c_);
+    const auto& raster = its.state.raster(gl, c_->shared->culling);
+    const auto whole = [&](WhyWhole reason) {
+        why = reason;
+        return culling::Cut::Whole;
+    };
+    if (raster.isUpsideDown || c_->viewportsDiffer) return whole(WhyWhole::Viewports);
+    if (c_->program == 0 && raster.isArbProgram) return whole(WhyWhole::ArbProgram);
+    replay::CullingProgram* program = nullptr;
+    if (c_->program != 0) program = &cullingProgram(name(Kind::Program, c_->program));
+    if (program ? !program->view : c_->core) return whole(WhyWhole::Shader);
+    if (const WhyWhole reason = readArrays(program, culling_->arrays); reason != WhyWhole::None) return whole(reason);
+    culling::BoxCache::Entry& entry = lookAtBoxes(draw, culling_->arrays);
+    if (!entry.boxes) return whole(entry.isImpossible ? WhyWhole::NotFinite : WhyWhole::FirstUse);
+    const culling::TilePlanes* const planes = planesFor(draw.mode, program, culling_->arrays);
+    if (!planes) return whole(WhyWhole::Shader);
+    const bool isTried = entry.pause == 0 && canCut(draw, program, raster);
+    if (entry.pause > 0) --entry.pause;
+    const culling::Cut cut =
+        culling::cutDraw(*entry.boxes, *planes, draw.count, culling::formOf(draw.mode), isTried, culling_->ranges);
+    entry.vain = cut == culling::Cut::Whole && isTried ? entry.vain + 1 : 0;
+    if (cut != culling::Cut::Whole) entry.lastPause = 0;
+    if (entry.vain < kVainDraws) return cut;
+    entry.vain = 0;
+    entry.lastPause = std::clamp(2 * entry.lastPause, kLeastPause, kLongestPause);
+    entry.pause = entry.lastPause;
+    return cut;
+}
+
+// Returns true if nothing more of the draw must be drawn.
+bool Replay::cullDraw(uint16_t opcode, std::span<const std::byte> arguments) {
+    const DrawWords& words = effectOf(opcode).draw;
+    const auto draw = cullingDrawOf(opcode, arguments);
+    const uint64_t vertices = draw              ? draw->count * draw->instances
+                              : words.count > 0 ? cullWord(arguments, words.count)
+                                                : 0;
+    culling::CullingCounts& counts = counts_.culling;
+    WhyWhole why = whyUnexamined(opcode, draw);
+    if (why == WhyWhole::None && c_->draw->drawn.contains(c_->draw->whole)) return false;
+    const culling::Cut cut = why == WhyWhole::None ? cutOf(*draw, why) : culling::Cut::Whole;
+    uint64_t kept = 0;
+    for (const culling::VertexRange& range : culling_->ranges) kept += cut == culling::Cut::Ranges ? range.count : 0;
+    if (cut == culling::Cut::Whole) kept = vertices;
+    ++(cut == culling::Cut::Whole    ? counts.drawsWhole
+       : cut == culling::Cut::Ranges ? counts.drawsCut
+                                     : counts.drawsLeftOut);
+    counts.verticesDrawn += kept;
+    counts.verticesLeftOut += vertices - std::min(kept, vertices);
+    if (why != WhyWhole::None) counts.unexamined[static_cast<size_t>(why)] += vertices;
+    if (cut != culling::Cut::Nothing) cullingOf(*c_).state.hasPendingPrimitives = false;
+    if (cut == culling::Cut::Whole) return false;
+    if (culling_->mode == CullingMode::Audit) auditDraw(*draw, cut);
+    if (cut == culling::Cut::Ranges) {
+        issue(*draw, culling_->ranges);
+        return true;
+    }
+    // Mesa collects neighbouring primitives of glBegin into one batch, whose pixels depend on the batch. Any draw
+    // separates them.
+    if (std::exchange(cullingOf(*c_).state.hasPendingPrimitives, false)) gl.glDrawArrays(draw->mode, 0, 0);
+    return true;
+}
+
+} // namespace mural

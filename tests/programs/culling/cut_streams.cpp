@@ -1,0 +1,142 @@
+// Buffers whose contents change after nodes know them, by every way to write a buffer: what was at the left moves to
+// the right. Each content is drawn twice, so that nodes examine it.
+#include <cstring>
+
+#include "tests/programs/culling/meshes.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/shaders.hpp"
+#include "tests/programs/support/show.hpp"
+
+using namespace programs;
+
+namespace {
+
+constexpr int kWays = 9;
+constexpr GLsizei kCells = 12;
+constexpr GLsizeiptr kBytes = kCells * kCells * 6 * static_cast<GLsizeiptr>(sizeof(Vertex));
+GLuint buffers[kWays], other, feedback, indices;
+void* persistent = nullptr;
+
+std::vector<Vertex> contents(int way, bool isRight) {
+    std::vector<Vertex> vertices = field(kCells, kCells, 6);
+    for (Vertex& v : vertices) {
+        v.x = 0.3F * v.x + (isRight ? 0.6F : -0.6F);
+        v.y = 0.09F * v.y + 0.2F * static_cast<float>(way) - 0.85F;
+    }
+    return vertices;
+}
+
+void setUp(Window&) {
+    for (int way = 0; way < kWays; ++way)
+        buffers[way] = bufferOf(GL_ARRAY_BUFFER, kBytes, contents(way, false).data(), GL_DYNAMIC_DRAW);
+    other = bufferOf(GL_ARRAY_BUFFER, kBytes, nullptr);
+    std::vector<GLuint> numbers;
+    for (GLuint i = 0; i < kCells * kCells * 6; ++i) numbers.push_back(i);
+    indices = bufferOf(GL_ELEMENT_ARRAY_BUFFER, numbers.size() * 4, numbers.data());
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    feedback = buildProgram({{GL_VERTEX_SHADER, "#version 150 compatibility\n"
+                                                "in vec4 place; in vec4 tint; out vec4 moved; out vec4 shade;\n"
+                                                "void main() { moved = place; shade = tint; gl_Position = place; }"}},
+                            [](unsigned program) {
+                                const char* names[] = {"moved"};
+                                glBindAttribLocation(program, 0, "place");
+                                glBindAttribLocation(program, 1, "tint");
+                                glTransformFeedbackVaryings(program, 1, names, GL_INTERLEAVED_ATTRIBS);
+                            });
+    const GLbitfield flags = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+    glDeleteBuffers(1, &buffers[7]);
+    glGenBuffers(1, &buffers[7]);
+    glBindBuffer(GL_ARRAY_BUFFER, buffers[7]);
+    glBufferStorage(GL_ARRAY_BUFFER, kBytes, contents(7, false).data(), flags | GL_DYNAMIC_STORAGE_BIT);
+    persistent = glMapBufferRange(GL_ARRAY_BUFFER, 0, kBytes, flags);
+}
+
+// Captures the vertices of another buffer. They have four floats each, and no colours.
+void capture(GLuint to, int way, bool isRight) {
+    glBindBuffer(GL_ARRAY_BUFFER, other);
+    glBufferSubData(GL_ARRAY_BUFFER, 0, kBytes, contents(way, isRight).data());
+    glUseProgram(feedback);
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), offsetOf(0));
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, to);
+    glEnable(GL_RASTERIZER_DISCARD);
+    glBeginTransformFeedback(GL_TRIANGLES);
+    glDrawArrays(GL_TRIANGLES, 0, kCells * kCells * 6);
+    glEndTransformFeedback();
+    glDisable(GL_RASTERIZER_DISCARD);
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+    glDisableVertexAttribArray(0);
+    glUseProgram(0);
+}
+
+void write(int way, bool isRight) {
+    const std::vector<Vertex> wanted = contents(way, isRight);
+    glBindBuffer(GL_ARRAY_BUFFER, buffers[way]);
+    switch (way) {
+    case 0: glBufferData(GL_ARRAY_BUFFER, kBytes, wanted.data(), GL_DYNAMIC_DRAW); break;
+    case 1: glBufferSubData(GL_ARRAY_BUFFER, 0, kBytes, wanted.data()); break;
+    case 2:
+        std::memcpy(glMapBuffer(GL_ARRAY_BUFFER, GL_WRITE_ONLY), wanted.data(), kBytes);
+        glUnmapBuffer(GL_ARRAY_BUFFER);
+        break;
+    case 3:
+        std::memcpy(glMapBufferRange(GL_ARRAY_BUFFER, 0, kBytes, GL_MAP_WRITE_BIT | GL_MAP_FLUSH_EXPLICIT_BIT),
+                    wanted.data(), kBytes);
+        glFlushMappedBufferRange(GL_ARRAY_BUFFER, 0, kBytes);
+        glUnmapBuffer(GL_ARRAY_BUFFER);
+        break;
+    case 4:
+        glBindBuffer(GL_COPY_READ_BUFFER, other);
+        glBufferSubData(GL_COPY_READ_BUFFER, 0, kBytes, wanted.data());
+        glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_ARRAY_BUFFER, 0, 0, kBytes);
+        break;
+    case 5: glNamedBufferSubData(buffers[way], 0, kBytes, wanted.data()); break;
+    case 6: capture(buffers[way], way, isRight); break;
+    case 7: std::memcpy(persistent, wanted.data(), kBytes); break;
+    default: { // the indices change: a part of the mesh, from the left or from the right
+        std::vector<GLuint> numbers;
+        for (GLuint i = 0; i < kCells * kCells * 6; ++i) numbers.push_back(isRight ? i : i / 2);
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
+        glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(numbers.size() * 4), numbers.data());
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    }
+    }
+}
+
+void drawBuffers() {
+    for (int way = 0; way < kWays; ++way) {
+        glBindBuffer(GL_ARRAY_BUFFER, buffers[way]);
+        glColor3ub(static_cast<GLubyte>(25 * way + 30), 220, 90);
+        if (way == 6)
+            glVertexPointer(4, GL_FLOAT, 16, offsetOf(0));
+        else
+            glVertexPointer(3, GL_FLOAT, sizeof(Vertex), offsetOf(0));
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, way == 8 ? indices : 0);
+        if (way == 8)
+            glDrawElements(GL_TRIANGLES, kCells * kCells * 6, GL_UNSIGNED_INT, offsetOf(0));
+        else
+            glDrawArrays(GL_TRIANGLES, 0, kCells * kCells * 6);
+    }
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+}
+
+void draw(Window&, int frame) {
+    glClearColor(0, 0, 0.2F, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    for (int way = 0; way < kWays; ++way) write(way, frame % 2 == 0);
+    drawBuffers();
+    drawBuffers();
+    if (frame % 3 == 2) { // in the middle of a frame
+        for (int way = 0; way < kWays; ++way) write(way, frame % 2 != 0);
+        drawBuffers();
+        drawBuffers();
+    }
+    glDisableClientState(GL_VERTEX_ARRAY);
+}
+
+} // namespace
+
+int main(int argc, char** argv) { return runInGlxWindow(argc, argv, WindowSpec{}, setUp, draw); }
