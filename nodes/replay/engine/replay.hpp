@@ -378,6 +378,7 @@ private:
     static replay::ContextCulling& cullingOf(ContextState& c);
     void onCulling(uint16_t opcode, std::span<const std::byte> arguments);
     void onCulledMemory();
+    void onDeletedBuffers(std::span<const std::byte> arguments);
     void onCullingRecord(uint16_t opcode, std::span<const std::byte> arguments);
     [[nodiscard]] culling::WhyWhole whyUnexamined(uint16_t opcode, const std::optional<replay::CullingDraw>& draw);
     [[nodiscard]] replay::CullingProgram& cullingProgram(GLuint nodeName);

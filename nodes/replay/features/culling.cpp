@@ -26,6 +26,8 @@ using culling::WhyWhole;
 constexpr double kMarginPixels = 2;
 // After this number of draws in a row from which nothing was left out, clusters are not tried for some draws.
 constexpr uint32_t kVainDraws = 8, kLeastPause = 64, kLongestPause = 4096;
+// Larger draws do not count in the report.
+constexpr uint64_t kMaxCounted = uint64_t{1} << 31;
 // A planted fault: planes inside of the area.
 constexpr double kPlantedMargin = -40;
 
@@ -71,6 +73,7 @@ replay::ContextCulling& Replay::cullingOf(ContextState& c) {
     c.culling = std::make_shared<replay::ContextCulling>();
     c.culling->state.facts.isCore = c.core;
     c.culling->state.facts.version = c.version;
+    if (c.shared) ++c.shared->culling.contexts;
     return *c.culling;
 }
 
@@ -81,6 +84,9 @@ void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
     replay::CullingGroup& group = c_->shared->culling;
     using State = replay::CullingState;
     const bool seesContents = !culling_->plantsContents;
+    const auto anyChanged = [&] {
+        if (seesContents) group.anyBufferChanged();
+    };
     switch (cullUseOf(opcode)) {
     case CullUse::None: break;
     case CullUse::Draw:
@@ -95,7 +101,10 @@ void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
         if (group.hasSeen(cullWord(arguments, 0))) state.changed(State::Raster);
         break;
     case CullUse::Arrays: state.changed(State::Arrays); break;
-    case CullUse::VertexArray: state.changed(State::VertexArray); break;
+    case CullUse::VertexArray:
+        group.hasVertexArrays = group.hasVertexArrays || cullWord(arguments, 0) != 0;
+        state.changed(State::VertexArray);
+        break;
     case CullUse::IndexBuffer:
         if (cullWord(arguments, 0) == GL_ELEMENT_ARRAY_BUFFER) state.changed(State::IndexBuffer);
         break;
@@ -106,18 +115,20 @@ void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
         else if (cullWord(arguments, 0) == GL_ELEMENT_ARRAY_BUFFER && bound_)
             group.bufferChanged(state.indexBuffer(gl));
         else
-            group.anyBufferChanged();
+            anyChanged();
         break;
     case CullUse::NamedContents:
         if (seesContents) group.bufferChanged(name(Kind::Buffer, cullWord(arguments, 0)));
         break;
     case CullUse::ReadsPicture:
-        if (c_->packBuffer) group.anyBufferChanged();
+        if (c_->packBuffer) anyChanged();
         break;
-    case CullUse::AllContents: group.anyBufferChanged(); break;
+    case CullUse::AllContents: anyChanged(); break;
     case CullUse::DeletedBuffers:
-        group.anyBufferChanged();
+        anyChanged();
         state.changed(State::Arrays);
+        if (effectOf(opcode).object == ObjectType::Buffer && (group.contexts > 1 || group.hasVertexArrays))
+            onDeletedBuffers(arguments);
         break;
     case CullUse::Program: state.changed(State::Program); break;
     case CullUse::Link: ++group.links; break;
@@ -134,10 +145,29 @@ void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
         break;
     case CullUse::Everything:
         state.changed(State::All);
-        group.anyBufferChanged();
+        anyChanged();
         ++group.links;
         ++group.uniforms;
         break;
+    }
+}
+
+void Replay::onDeletedBuffers(std::span<const std::byte> arguments) {
+    class NoBlobs : public BlobQueue {
+        std::span<const std::byte> takeBlob(bool& found) override {
+            found = false;
+            return {};
+        }
+    } blobs;
+    Args in(arguments, blobs);
+    const auto count = in.get<GLsizei>();
+    const Data names = in.data();
+    if (!in.ok() || count < 0 || names.size() < 4 * static_cast<uint64_t>(count))
+        return c_->shared->culling.unknownBuffersDeleted();
+    for (GLsizei i = 0; i < count; ++i) {
+        GLuint app = 0;
+        std::memcpy(&app, names.as<std::byte>() + 4 * static_cast<ptrdiff_t>(i), 4);
+        if (app != 0) c_->shared->culling.bufferDeleted(name(Kind::Buffer, app));
     }
 }
 
@@ -251,6 +281,7 @@ culling::Cut Replay::cutOf(const replay::CullingDraw& draw, WhyWhole& why) {
     if (c_->program != 0) program = &cullingProgram(name(Kind::Program, c_->program));
     if (program ? !program->view : c_->core) return whole(WhyWhole::Shader);
     if (const WhyWhole reason = readArrays(program, culling_->arrays); reason != WhyWhole::None) return whole(reason);
+    if (draw.indexType && c_->shared->culling.isAmbiguous(its.state.indexBuffer(gl))) return whole(WhyWhole::Attribute);
     culling::BoxCache::Entry& entry = lookAtBoxes(draw, culling_->arrays);
     if (!entry.boxes) return whole(entry.isImpossible ? WhyWhole::NotFinite : WhyWhole::FirstUse);
     const culling::TilePlanes* const planes = planesFor(draw.mode, program, culling_->arrays);
@@ -272,9 +303,8 @@ culling::Cut Replay::cutOf(const replay::CullingDraw& draw, WhyWhole& why) {
 bool Replay::cullDraw(uint16_t opcode, std::span<const std::byte> arguments) {
     const DrawWords& words = effectOf(opcode).draw;
     const auto draw = cullingDrawOf(opcode, arguments);
-    const uint64_t vertices = draw              ? draw->count * draw->instances
-                              : words.count > 0 ? cullWord(arguments, words.count)
-                                                : 0;
+    uint64_t vertices = draw ? draw->count * draw->instances : words.count > 0 ? cullWord(arguments, words.count) : 0;
+    if (vertices > kMaxCounted) vertices = 0; // GL refuses it
     culling::CullingCounts& counts = counts_.culling;
     WhyWhole why = whyUnexamined(opcode, draw);
     if (why == WhyWhole::None && c_->draw->drawn.contains(c_->draw->whole)) return false;

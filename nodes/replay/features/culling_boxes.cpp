@@ -16,6 +16,7 @@ constexpr uint64_t kMaxVertexBytes = uint64_t{1} << 30;
 // Reads a part of a buffer. Returns nothing if the buffer is shorter.
 std::optional<std::vector<std::byte>> Replay::bytesOfBuffer(GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
     if (sizeBytes > kMaxVertexBytes || offset > INT64_MAX - sizeBytes) return std::nullopt;
+    if (c_->version >= 42 && gl.glMemoryBarrier) gl.glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT); // writes of shaders
     gl.glBindBuffer(GL_ARRAY_BUFFER, buffer);
     GLint there = 0;
     gl.glGetBufferParameteriv(GL_ARRAY_BUFFER, GL_BUFFER_SIZE, &there);

@@ -134,6 +134,7 @@ WhyWhole Replay::readArrays(const replay::CullingProgram* program, std::vector<r
             isFixed ? state.position(gl) : state.attribute(gl, static_cast<GLuint>(location));
         if (!array.isEnabled || !array.isFloat || array.divisor != 0) return WhyWhole::Attribute;
         if (array.buffer == 0) return WhyWhole::ClientMemory;
+        if (c_->shared->culling.isAmbiguous(array.buffer)) return WhyWhole::Attribute;
         if (array.components < 1 || array.components > 4) return WhyWhole::Attribute; // such as GL_BGRA
         components += static_cast<size_t>(array.components);
         arrays.push_back(array);

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "gl_functions.hpp"
@@ -27,14 +28,24 @@ public:
     void capSeen(GLenum cap);
     [[nodiscard]] bool hasSeen(GLenum cap) const;
 
-    uint64_t uniforms = 0; // changes of uniforms
-    uint64_t links = 0;    // changes of programs
+    // A deleted buffer lives on in vertex arrays that are not bound, and in other contexts, while a new buffer may have
+    // its name. Arrays of such names are not examined.
+    void bufferDeleted(GLuint buffer) { ambiguous_.insert(buffer); }
+    void unknownBuffersDeleted() { isAnyAmbiguous_ = true; }
+    [[nodiscard]] bool isAmbiguous(GLuint buffer) const { return isAnyAmbiguous_ || ambiguous_.contains(buffer); }
+
+    int contexts = 0;             // of the share group
+    bool hasVertexArrays = false; // some context has bound one
+    uint64_t uniforms = 0;        // changes of uniforms
+    uint64_t links = 0;           // changes of programs
     // by this node's name, as of knownLinks
     std::unordered_map<GLuint, std::shared_ptr<CullingProgram>> programs;
     uint64_t knownLinks = 0;
 
 private:
     std::unordered_map<GLuint, uint64_t> contents_;
+    std::unordered_set<GLuint> ambiguous_;
+    bool isAnyAmbiguous_ = false;
     uint32_t caps_ = 0;
 };
 

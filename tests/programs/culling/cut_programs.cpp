@@ -110,10 +110,10 @@ void draw(Window&, int frame) {
     const Matrix view = multiply(perspective(0.2F, 0.2F, 0.2F, 40), translation(0, 0, -2.2F));
     for (int i = 0; i < kPrograms; ++i) {
         const auto turn = 0.1F * static_cast<float>(frame + 5 * i);
-        const Matrix model = multiply(multiply(translation(1.5F * std::sin(2.1F * static_cast<float>(i)),
-                                                           1.2F * std::cos(1.7F * static_cast<float>(i)), 0.2F),
+        const Matrix model = multiply(multiply(translation(0.7F * std::sin(2.1F * static_cast<float>(i)),
+                                                           0.6F * std::cos(1.7F * static_cast<float>(i)), 0.2F),
                                                rotationY(turn)),
-                                      scaling(0.7F, 0.7F, 0.7F));
+                                      scaling(1.1F, 1.1F, 1.1F));
         setUniforms(programs_[i], view, model, frame);
         glBindVertexArray(arrays[i % 3]);
         if (i == kInstanced) {

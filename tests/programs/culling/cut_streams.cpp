@@ -1,5 +1,5 @@
 // Buffers whose contents change after nodes know them, by every way to write a buffer: what was at the left moves to
-// the right. Each content is drawn twice, so that nodes examine it.
+// the right.
 #include <cstring>
 
 #include "tests/programs/culling/meshes.hpp"
@@ -120,6 +120,37 @@ void drawBuffers() {
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
 }
 
+// Nodes examine contents that they draw for the second time. Only the third time is visible.
+void drawKnown() {
+    drawBuffers();
+    drawBuffers();
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    drawBuffers();
+}
+
+// A deleted buffer lives on in its vertex array, while a new buffer takes its name.
+void drawDeleted(bool isRight) {
+    GLuint arrays[2] = {}, buffer = 0;
+    glGenVertexArrays(2, arrays);
+    for (int i = 0; i < 2; ++i) {
+        buffer = bufferOf(GL_ARRAY_BUFFER, kBytes, contents(4 * i, isRight != (i == 1)).data());
+        glBindVertexArray(arrays[i]);
+        glEnableClientState(GL_VERTEX_ARRAY);
+        glVertexPointer(3, GL_FLOAT, sizeof(Vertex), offsetOf(0));
+        glBindVertexArray(0);
+        if (i == 0) glDeleteBuffers(1, &buffer);
+    }
+    for (int round = 0; round < 4; ++round)
+        for (const GLuint array : arrays) {
+            glBindVertexArray(array);
+            glColor3ub(255, static_cast<GLubyte>(60 * round), 10);
+            glDrawArrays(GL_TRIANGLES, 0, kCells * kCells * 6);
+        }
+    glBindVertexArray(0);
+    glDeleteVertexArrays(2, arrays);
+    glDeleteBuffers(1, &buffer);
+}
+
 void draw(Window&, int frame) {
     glClearColor(0, 0, 0.2F, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -127,13 +158,12 @@ void draw(Window&, int frame) {
     glDepthFunc(GL_LEQUAL);
     glEnableClientState(GL_VERTEX_ARRAY);
     for (int way = 0; way < kWays; ++way) write(way, frame % 2 == 0);
-    drawBuffers();
-    drawBuffers();
+    drawKnown();
     if (frame % 3 == 2) { // in the middle of a frame
         for (int way = 0; way < kWays; ++way) write(way, frame % 2 != 0);
-        drawBuffers();
-        drawBuffers();
+        drawKnown();
     }
+    drawDeleted(frame % 2 != 0);
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 
