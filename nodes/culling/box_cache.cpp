@@ -1,16 +1,17 @@
 #include "nodes/culling/box_cache.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace mural::culling {
 
 namespace {
 // Memory of an entry without boxes, with the nodes of list and map.
-constexpr size_t kEntryBytes = 640;
+constexpr size_t kEntryBytes = 384;
 } // namespace
 
-size_t BoxKey::hash() const {
+uint64_t BoxKey::hash() const {
     uint64_t hash = used_;
     for (size_t i = 0; i < used_; ++i) {
         hash = (hash ^ numbers_[i]) * 0x9e3779b97f4a7c15u;
@@ -20,22 +21,26 @@ size_t BoxKey::hash() const {
 }
 
 BoxCache::Entry& BoxCache::look(const BoxKey& key) {
-    const auto known = byKey_.find(key);
-    if (known != byKey_.end()) {
-        nodes_.splice(nodes_.begin(), nodes_, known->second);
-    } else {
-        nodes_.push_front({key, {}, kEntryBytes});
-        byKey_.emplace(key, nodes_.begin());
+    const uint64_t hash = key.hash();
+    const auto [known, isNew] = byHash_.try_emplace(hash);
+    if (isNew) {
+        nodes_.push_front({{}, false, kEntryBytes, hash, key});
+        known->second = nodes_.begin();
         bytes_ += kEntryBytes;
+        last_ = &nodes_.front();
         shrink();
+    } else if (last_ = &*known->second; !(last_->key == key)) { // another key with this hash
+        bytes_ += kEntryBytes - last_->sizeBytes;
+        *last_ = {{}, false, kEntryBytes, hash, key};
+    } else {
+        last_->isUsed = true;
     }
-    Entry& entry = nodes_.front().entry;
-    if (entry.sightings < UINT32_MAX) ++entry.sightings;
-    return entry;
+    if (last_->entry.sightings < UINT32_MAX) ++last_->entry.sightings;
+    return last_->entry;
 }
 
 void BoxCache::store(std::shared_ptr<const DrawBoxes> boxes) {
-    Node& node = nodes_.front();
+    Node& node = *last_;
     node.entry.isImpossible = !boxes;
     node.entry.boxes = std::move(boxes);
     const size_t size = kEntryBytes + (node.entry.boxes ? node.entry.boxes->memoryBytes() : 0);
@@ -43,11 +48,16 @@ void BoxCache::store(std::shared_ptr<const DrawBoxes> boxes) {
     shrink();
 }
 
-// Keeps the latest entry, even if it is larger than the bound.
+// Keeps the entry that look() returned last, even if it is larger than the bound.
 void BoxCache::shrink() {
     while (bytes_ > maxBytes_ && nodes_.size() > 1) {
-        bytes_ -= nodes_.back().sizeBytes;
-        byKey_.erase(nodes_.back().key);
+        Node& oldest = nodes_.back();
+        if (std::exchange(oldest.isUsed, false) || &oldest == last_) {
+            nodes_.splice(nodes_.begin(), nodes_, std::prev(nodes_.end()));
+            continue;
+        }
+        bytes_ -= oldest.sizeBytes;
+        byHash_.erase(oldest.hash);
         nodes_.pop_back();
     }
     peakBytes_ = std::max(peakBytes_, bytes_);

@@ -1,8 +1,10 @@
-// Boxes of draws by the contents and the layout of their arrays: bounded, least recently used first.
+// Boxes of draws by the contents and the layout of their arrays. At the bound, entries leave that no draw has looked up
+// since the last round of removals. A look-up therefore reorders nothing, and touches few cache lines.
 //
 // A key is boxed when it comes the second time, because vertices that change with each draw never pay.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <list>
@@ -24,13 +26,15 @@ public:
             numbers_[used_++] = number;
     }
     [[nodiscard]] bool isComplete() const { return isComplete_; }
-    [[nodiscard]] size_t hash() const;
-    friend bool operator==(const BoxKey&, const BoxKey&) = default;
+    [[nodiscard]] uint64_t hash() const;
+    friend bool operator==(const BoxKey& a, const BoxKey& b) {
+        return a.used_ == b.used_ && std::equal(a.numbers_.begin(), a.numbers_.begin() + a.used_, b.numbers_.begin());
+    }
 
 private:
-    std::array<uint64_t, 24> numbers_{};
-    size_t used_ = 0;
+    uint32_t used_ = 0;
     bool isComplete_ = true;
+    std::array<uint64_t, 24> numbers_{};
 };
 
 inline constexpr size_t kBoxCacheBytes = size_t{64} << 20;
@@ -56,19 +60,22 @@ public:
     [[nodiscard]] size_t peakBytes() const { return peakBytes_; }
 
 private:
-    struct Hash {
-        size_t operator()(const BoxKey& key) const { return key.hash(); }
-    };
     struct Node {
-        BoxKey key;
         Entry entry;
+        bool isUsed = false; // again, since the last round
         size_t sizeBytes = 0;
+        uint64_t hash = 0;
+        BoxKey key;
+    };
+    struct SameHash {
+        size_t operator()(uint64_t hash) const { return hash; }
     };
     void shrink();
 
     size_t maxBytes_, bytes_ = 0, peakBytes_ = 0;
     std::list<Node> nodes_; // the latest first
-    std::unordered_map<BoxKey, std::list<Node>::iterator, Hash> byKey_;
+    std::unordered_map<uint64_t, std::list<Node>::iterator, SameHash> byHash_;
+    Node* last_ = nullptr; // of look()
 };
 
 } // namespace mural::culling

@@ -11,7 +11,7 @@
 namespace mural::culling {
 
 // Attribute components that one linear function may read.
-inline constexpr size_t kMaxInputs = 16;
+inline constexpr size_t kMaxInputs = 8;
 
 // Rounding of one operation in 32 bits, relative to the magnitudes of its operands.
 inline constexpr double kRounding = 2.4e-7;

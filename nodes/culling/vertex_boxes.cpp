@@ -225,11 +225,13 @@ PrimitiveForm formOf(uint32_t mode) {
     }
 }
 
-DrawBoxes::DrawBoxes(size_t inputs, std::vector<float> whole, std::vector<Level> levels)
-    : inputs_(inputs), whole_(std::move(whole)), levels_(std::move(levels)) {}
+DrawBoxes::DrawBoxes(size_t inputs, const std::vector<float>& whole, std::vector<Level> levels)
+    : inputs_(inputs), levels_(std::move(levels)) {
+    std::copy_n(whole.begin(), std::min(whole.size(), whole_.size()), whole_.begin());
+}
 
 size_t DrawBoxes::memoryBytes() const {
-    size_t bytes = sizeof *this + whole_.capacity() * sizeof(float);
+    size_t bytes = sizeof *this;
     for (const Level& level : levels_) bytes += sizeof level + level.bounds.capacity() * sizeof(float);
     return bytes;
 }
@@ -262,7 +264,7 @@ std::optional<DrawBoxes> makeBoxes(std::span<const AttributeArray> arrays, const
     if (step == 0 || vertices.count < kMinClusters * step) {
         std::vector<float> whole;
         if (!appendBox(arrays, vertices, 0, vertices.count, inputs, whole)) return std::nullopt;
-        return DrawBoxes(inputs, std::move(whole), {});
+        return DrawBoxes(inputs, whole, {});
     }
     levels.push_back({step, {}});
     for (uint64_t from = 0; from < vertices.count; from += step)
@@ -273,8 +275,8 @@ std::optional<DrawBoxes> makeBoxes(std::span<const AttributeArray> arrays, const
         const size_t group = kClusterPrimitives[i] / kClusterPrimitives[i - 1];
         levels.push_back({levels.back().vertices * group, unitedBoxes(levels.back().bounds, inputs, group)});
     }
-    std::vector<float> whole = unitedBoxes(levels.back().bounds, inputs, SIZE_MAX);
-    return DrawBoxes(inputs, std::move(whole), std::move(levels));
+    const std::vector<float> whole = unitedBoxes(levels.back().bounds, inputs, SIZE_MAX);
+    return DrawBoxes(inputs, whole, std::move(levels));
 }
 
 } // namespace mural::culling

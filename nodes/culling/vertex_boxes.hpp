@@ -2,6 +2,7 @@
 // bytes of its arrays.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -50,7 +51,8 @@ public:
         uint64_t vertices = 0;     // step of a cluster, without the overlap
         std::vector<float> bounds; // lowest and highest inputs of each cluster
     };
-    DrawBoxes(size_t inputs, std::vector<float> whole, std::vector<Level> levels);
+    // whole: lowest and highest inputs, at most kMaxInputs each.
+    DrawBoxes(size_t inputs, const std::vector<float>& whole, std::vector<Level> levels);
 
     [[nodiscard]] size_t inputs() const { return inputs_; }
     [[nodiscard]] const float* lowest() const { return whole_.data(); }
@@ -66,7 +68,7 @@ public:
 
 private:
     size_t inputs_;
-    std::vector<float> whole_;
+    std::array<float, 2 * kMaxInputs> whole_{}; // in the object, for draws that are only decided as a whole
     std::vector<Level> levels_;
 };
 

@@ -13,7 +13,7 @@ BoxKey keyOf(uint64_t number) {
 }
 
 std::shared_ptr<const DrawBoxes> boxesOf(size_t floats) {
-    return std::make_shared<DrawBoxes>(1, std::vector<float>(floats), std::vector<DrawBoxes::Level>{});
+    return std::make_shared<DrawBoxes>(1, std::vector<float>(2), std::vector<DrawBoxes::Level>{{1, std::vector<float>(floats)}});
 }
 
 TEST(BoxCache, wantsBoxesAtTheSecondSighting) {
@@ -29,19 +29,25 @@ TEST(BoxCache, wantsBoxesAtTheSecondSighting) {
     EXPECT_FALSE(cache.look(keyOf(2)).wantsBoxes()) << "impossible boxes are not tried again";
 }
 
-TEST(BoxCache, dropsTheLeastRecentlyUsedAtItsBound) {
+TEST(BoxCache, dropsWhatWasNotUsedForLongAtItsBound) {
     BoxCache cache(100'000);
-    for (uint64_t i = 0; i < 40; ++i) {
+    for (const uint64_t i : {0, 1}) {
         cache.look(keyOf(i));
-        cache.look(keyOf(0));
         cache.look(keyOf(i));
         cache.store(boxesOf(1000));
+    }
+    for (uint64_t i = 2; i < 2000; ++i) { // contents that change with each draw
+        cache.look(keyOf(i));
+        cache.look(keyOf(0));
         EXPECT_LE(cache.memoryBytes(), 100'000U);
     }
     EXPECT_TRUE(cache.look(keyOf(0)).boxes);
-    EXPECT_TRUE(cache.look(keyOf(39)).boxes);
     EXPECT_FALSE(cache.look(keyOf(1)).boxes);
     EXPECT_LE(cache.peakBytes(), 100'000U);
+    cache.look(keyOf(5));
+    cache.look(keyOf(5));
+    cache.store(boxesOf(100'000)); // alone above the bound
+    EXPECT_TRUE(cache.look(keyOf(5)).boxes);
 }
 
 TEST(BoxCache, keysWithTooManyNumbersAreIncomplete) {

@@ -1,9 +1,11 @@
 #include "nodes/replay/engine/command_uses.hpp"
 
-#include "streamcodec/command_effects.hpp"
-#include "streamcodec/command_traits.hpp"
+#include <vector>
 
 #include <GL/gl.h>
+
+#include "streamcodec/command_effects.hpp"
+#include "streamcodec/command_traits.hpp"
 
 namespace mural {
 
@@ -60,9 +62,7 @@ CullUse cullUseOfBind(ObjectType object) {
     }
 }
 
-} // namespace
-
-CullUse cullUseOf(uint16_t opcode) {
+CullUse cullUseByEffect(uint16_t opcode) {
     const CommandEffect& effect = effectOf(opcode);
     switch (effect.kind) {
     case EffectKind::Draw: return CullUse::Draw;
@@ -73,6 +73,7 @@ CullUse cullUseOf(uint16_t opcode) {
     case EffectKind::Cell:
     case EffectKind::Limit:
         return effect.attribBits == 0 || (effect.attribBits & kRasterBits) ? CullUse::Raster : CullUse::None;
+    case EffectKind::MatrixMode: return CullUse::MatrixMode;
     case EffectKind::Cap: return CullUse::Cap;
     case EffectKind::ClientCap:
     case EffectKind::ArrayPointer:
@@ -102,6 +103,7 @@ CullUse cullUseOf(uint16_t opcode) {
     case EffectKind::CallList:
     case EffectKind::CallLists: return CullUse::List;
     case EffectKind::Begin: return CullUse::Immediate;
+    case EffectKind::End: return CullUse::EndImmediate;
     case EffectKind::ReadsPicture: return CullUse::ReadsPicture;
     // State on which neither a position nor the contents of an array depends.
     case EffectKind::Nothing:
@@ -115,7 +117,6 @@ CullUse cullUseOf(uint16_t opcode) {
     case EffectKind::PatternedCell:
     case EffectKind::ActiveTexture:
     case EffectKind::ClientActiveTexture:
-    case EffectKind::MatrixMode:
     case EffectKind::ListBase:
     case EffectKind::AttribPush:
     case EffectKind::Gen:
@@ -155,7 +156,6 @@ CullUse cullUseOf(uint16_t opcode) {
     case EffectKind::Blit:
     case EffectKind::Barrier:
     case EffectKind::Vertex:
-    case EffectKind::End:
     case EffectKind::NewList:
     case EffectKind::EndList:
     case EffectKind::QueryBegin:
@@ -166,6 +166,17 @@ CullUse cullUseOf(uint16_t opcode) {
     case EffectKind::UnknownNames: break;
     }
     return CullUse::Everything;
+}
+
+} // namespace
+
+CullUse cullUseOf(uint16_t opcode) {
+    static const std::vector<CullUse> uses = [] {
+        std::vector<CullUse> all;
+        for (uint32_t i = 0; i < op::kLimit; ++i) all.push_back(cullUseByEffect(static_cast<uint16_t>(i)));
+        return all;
+    }();
+    return opcode < op::kLimit ? uses[opcode] : CullUse::Everything;
 }
 
 } // namespace mural

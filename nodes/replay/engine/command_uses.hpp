@@ -29,7 +29,8 @@ WholeUse wholeUseOf(uint16_t opcode);
 enum class CullUse : uint8_t {
     None,
     Draw,
-    Matrices,
+    Matrices,       // the matrix of the current mode
+    MatrixMode,
     Raster,         // viewport, widths, modes
     Cap,            // enables or disables its first argument
     Arrays,         // layout of vertex arrays
@@ -44,7 +45,8 @@ enum class CullUse : uint8_t {
     Uniforms,
     Pops,         // state of the context
     List,         // executes a display list
-    Immediate,    // begins a primitive
+    Immediate,     // begins a primitive
+    EndImmediate,
     ReadsPicture, // perhaps into a buffer
     Everything
 };

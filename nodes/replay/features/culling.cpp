@@ -94,7 +94,11 @@ void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
         state.hasPendingPrimitives = state.hasPendingPrimitives || !hasTrait(opcode, Trait::SkippableDraw);
         onCulledMemory();
         break;
-    case CullUse::Matrices: state.changed(State::Matrices); break;
+    case CullUse::Matrices: state.matrixChanged(); break;
+    case CullUse::MatrixMode:
+        // An error within a primitive. A list may be compiled without execution.
+        state.setMatrixMode(cullWord(arguments, 0), !state.isInPrimitive && !c_->compiling);
+        break;
     case CullUse::Raster: state.changed(State::Raster); break;
     case CullUse::Cap:
         group.capSeen(cullWord(arguments, 0));
@@ -136,15 +140,18 @@ void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
     case CullUse::Pops:
     case CullUse::List:
         state.changed(State::Matrices | State::Raster | State::Program);
+        state.setMatrixMode(0, false);
         state.hasPendingPrimitives = true;
         onCulledMemory();
         break;
+    case CullUse::EndImmediate: state.isInPrimitive = false; break;
     case CullUse::Immediate:
-        state.hasPendingPrimitives = true;
+        state.hasPendingPrimitives = state.isInPrimitive = true;
         onCulledMemory();
         break;
     case CullUse::Everything:
         state.changed(State::All);
+        state.setMatrixMode(0, false);
         anyChanged();
         ++group.links;
         ++group.uniforms;
@@ -200,6 +207,7 @@ void Replay::onCullingRecord(uint16_t opcode, std::span<const std::byte> argumen
         break;
     default:
         its.state.changed(replay::CullingState::All);
+        its.state.setMatrixMode(0, false);
         c_->shared->culling.anyBufferChanged();
         ++c_->shared->culling.links;
         ++c_->shared->culling.uniforms;

@@ -87,13 +87,21 @@ void CullingGroup::capSeen(GLenum cap) { caps_ |= bitOfCap(cap); }
 bool CullingGroup::hasSeen(GLenum cap) const { return (caps_ & bitOfCap(cap)) != 0; }
 
 const CullingState::FixedMatrices& CullingState::matrices(const GlFunctions& gl) {
-    if (isDirty(Matrices)) {
-        dirty_ &= ~unsigned{Matrices};
-        ++matricesNumber_;
-        gl.glGetFloatv(GL_PROJECTION_MATRIX, matrices_.projection);
-        gl.glGetFloatv(GL_MODELVIEW_MATRIX, matrices_.modelview);
-    }
+    if (!isDirty(Matrices)) return matrices_;
+    ++matricesNumber_;
+    if (isDirty(Projection)) gl.glGetFloatv(GL_PROJECTION_MATRIX, matrices_.projection);
+    if (isDirty(Modelview)) gl.glGetFloatv(GL_MODELVIEW_MATRIX, matrices_.modelview);
+    dirty_ &= ~unsigned{Matrices};
     return matrices_;
+}
+
+void CullingState::matrixChanged() {
+    switch (matrixMode_) {
+    case GL_MODELVIEW: dirty_ |= Modelview; break;
+    case GL_PROJECTION: dirty_ |= Projection; break;
+    case GL_TEXTURE: break;
+    default: dirty_ |= Matrices; // unknown, or one of the matrices of extensions
+    }
 }
 
 const CullingState::RasterState& CullingState::raster(const GlFunctions& gl, const CullingGroup& group) {

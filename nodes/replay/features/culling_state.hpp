@@ -32,7 +32,7 @@ public:
     // its name. Arrays of such names are not examined.
     void bufferDeleted(GLuint buffer) { ambiguous_.insert(buffer); }
     void unknownBuffersDeleted() { isAnyAmbiguous_ = true; }
-    [[nodiscard]] bool isAmbiguous(GLuint buffer) const { return isAnyAmbiguous_ || ambiguous_.contains(buffer); }
+    [[nodiscard]] bool isAmbiguous(GLuint buffer) const { return isAnyAmbiguous_ || (!ambiguous_.empty() && ambiguous_.contains(buffer)); }
 
     int contexts = 0;             // of the share group
     bool hasVertexArrays = false; // some context has bound one
@@ -63,7 +63,9 @@ struct CullingArray {
 class CullingState {
 public:
     enum Part : uint8_t {
-        Matrices = 1,
+        Modelview = 1,
+        Projection = 64,
+        Matrices = 65,
         Raster = 2,
         Arrays = 4,      // layouts of any vertex array
         VertexArray = 8, // the current vertex array
@@ -73,7 +75,11 @@ public:
     };
     // An index buffer belongs to a vertex array.
     void changed(unsigned parts) { dirty_ |= parts | (parts & (Arrays | VertexArray) ? unsigned{IndexBuffer} : 0U); }
-    [[nodiscard]] bool isDirty(Part part) const { return (dirty_ & part) != 0; }
+    // The matrix of the current mode changes.
+    void matrixChanged();
+    // The program sets the mode. isCertain: GL executes the command now.
+    void setMatrixMode(GLenum mode, bool isCertain) { matrixMode_ = isCertain ? mode : 0; }
+    [[nodiscard]] bool isDirty(unsigned part) const { return (dirty_ & part) != 0; }
 
     struct Facts {
         bool isCore = false;
@@ -111,6 +117,7 @@ public:
 
     // A draw that is left out would have separated the primitives before and after it.
     bool hasPendingPrimitives = false;
+    bool isInPrimitive = false; // perhaps: after glBegin
 
 private:
     void selectVertexArray(const GlFunctions& gl);
@@ -121,6 +128,7 @@ private:
         std::map<GLuint, CullingArray> attributes;
     };
     unsigned dirty_ = All;
+    GLenum matrixMode_ = 0; // 0: unknown
     FixedMatrices matrices_{};
     uint64_t matricesNumber_ = 0, rasterNumber_ = 0;
     RasterState raster_;
