@@ -1,7 +1,6 @@
 #include "nodes/culling/box_cache.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace mural::culling {
@@ -20,21 +19,49 @@ uint64_t BoxKey::hash() const {
     return hash;
 }
 
-BoxCache::Entry& BoxCache::look(const BoxKey& key) {
+BoxCache::Node& BoxCache::freshNode(const BoxKey& key, uint64_t hash) {
+    if (free_.empty()) {
+        nodes_.emplace_back();
+        free_.push_back(&nodes_.back());
+    }
+    Node& node = *free_.back();
+    free_.pop_back();
+    node = {};
+    node.sizeBytes = kEntryBytes;
+    node.hash = hash;
+    node.key = key;
+    bytes_ += kEntryBytes;
+    return node;
+}
+
+BoxCache::Node& BoxCache::nodeOf(const BoxKey& key) {
+    Node* const likely = last_ ? last_->successor : nullptr;
+    if (likely && !likely->isFree && likely->key == key) {
+        likely->isUsed = true;
+        return *likely;
+    }
     const uint64_t hash = key.hash();
     const auto [known, isNew] = byHash_.try_emplace(hash);
     if (isNew) {
-        nodes_.push_front({{}, false, kEntryBytes, hash, key});
-        known->second = nodes_.begin();
-        bytes_ += kEntryBytes;
-        last_ = &nodes_.front();
-        shrink();
-    } else if (last_ = &*known->second; !(last_->key == key)) { // another key with this hash
-        bytes_ += kEntryBytes - last_->sizeBytes;
-        *last_ = {{}, false, kEntryBytes, hash, key};
+        known->second = &freshNode(key, hash);
+    } else if (!(known->second->key == key)) { // another key with this hash
+        bytes_ += kEntryBytes - known->second->sizeBytes;
+        *known->second = {};
+        known->second->sizeBytes = kEntryBytes;
+        known->second->hash = hash;
+        known->second->key = key;
     } else {
-        last_->isUsed = true;
+        known->second->isUsed = true;
     }
+    if (last_) last_->successor = known->second;
+    return *known->second;
+}
+
+BoxCache::Entry& BoxCache::look(const BoxKey& key) {
+    last_ = &nodeOf(key);
+    if (bytes_ > maxBytes_) shrink();
+    peakBytes_ = std::max(peakBytes_, bytes_);
+    if (last_->successor) __builtin_prefetch(last_->successor);
     if (last_->entry.sightings < UINT32_MAX) ++last_->entry.sightings;
     return last_->entry;
 }
@@ -50,15 +77,15 @@ void BoxCache::store(std::shared_ptr<const DrawBoxes> boxes) {
 
 // Keeps the entry that look() returned last, even if it is larger than the bound.
 void BoxCache::shrink() {
-    while (bytes_ > maxBytes_ && nodes_.size() > 1) {
-        Node& oldest = nodes_.back();
-        if (std::exchange(oldest.isUsed, false) || &oldest == last_) {
-            nodes_.splice(nodes_.begin(), nodes_, std::prev(nodes_.end()));
-            continue;
-        }
-        bytes_ -= oldest.sizeBytes;
-        byHash_.erase(oldest.hash);
-        nodes_.pop_back();
+    while (bytes_ > maxBytes_ && byHash_.size() > 1) {
+        hand_ = hand_ < nodes_.size() ? hand_ : 0;
+        Node& node = nodes_[hand_++];
+        if (node.isFree || &node == last_ || std::exchange(node.isUsed, false)) continue;
+        bytes_ -= node.sizeBytes;
+        byHash_.erase(node.hash);
+        node.entry = {};
+        node.isFree = true;
+        free_.push_back(&node);
     }
     peakBytes_ = std::max(peakBytes_, bytes_);
 }

@@ -1,5 +1,6 @@
 // Boxes of draws by the contents and the layout of their arrays. At the bound, entries leave that no draw has looked up
-// since the last round of removals. A look-up therefore reorders nothing, and touches few cache lines.
+// since the last round of removals. Frames repeat their draws in the same order, so each entry remembers its successor:
+// a look-up then touches the entry's cache lines only.
 //
 // A key is boxed when it comes the second time, because vertices that change with each draw never pay.
 #pragma once
@@ -7,9 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <list>
+#include <deque>
 #include <memory>
 #include <unordered_map>
+#include <vector>
 
 #include "nodes/culling/vertex_boxes.hpp"
 
@@ -34,7 +36,7 @@ public:
 private:
     uint32_t used_ = 0;
     bool isComplete_ = true;
-    std::array<uint64_t, 24> numbers_{};
+    std::array<uint64_t, 24> numbers_; // the first used_ are set
 };
 
 inline constexpr size_t kBoxCacheBytes = size_t{64} << 20;
@@ -63,18 +65,24 @@ private:
     struct Node {
         Entry entry;
         bool isUsed = false; // again, since the last round
+        bool isFree = false;
         size_t sizeBytes = 0;
         uint64_t hash = 0;
+        Node* successor = nullptr; // looked up after this one, the last time; perhaps with another key now
         BoxKey key;
     };
     struct SameHash {
         size_t operator()(uint64_t hash) const { return hash; }
     };
+    Node& nodeOf(const BoxKey& key);
+    Node& freshNode(const BoxKey& key, uint64_t hash);
     void shrink();
 
     size_t maxBytes_, bytes_ = 0, peakBytes_ = 0;
-    std::list<Node> nodes_; // the latest first
-    std::unordered_map<uint64_t, std::list<Node>::iterator, SameHash> byHash_;
+    std::deque<Node> nodes_; // in no order; their addresses stay
+    std::vector<Node*> free_;
+    size_t hand_ = 0; // next candidate for removal
+    std::unordered_map<uint64_t, Node*, SameHash> byHash_;
     Node* last_ = nullptr; // of look()
 };
 

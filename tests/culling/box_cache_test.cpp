@@ -13,7 +13,8 @@ BoxKey keyOf(uint64_t number) {
 }
 
 std::shared_ptr<const DrawBoxes> boxesOf(size_t floats) {
-    return std::make_shared<DrawBoxes>(1, std::vector<float>(2), std::vector<DrawBoxes::Level>{{1, std::vector<float>(floats)}});
+    return std::make_shared<DrawBoxes>(1, std::vector<float>(2),
+                                       std::vector<DrawBoxes::Level>{{1, std::vector<float>(floats)}});
 }
 
 TEST(BoxCache, wantsBoxesAtTheSecondSighting) {

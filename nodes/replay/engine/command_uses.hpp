@@ -29,7 +29,7 @@ WholeUse wholeUseOf(uint16_t opcode);
 enum class CullUse : uint8_t {
     None,
     Draw,
-    Matrices,       // the matrix of the current mode
+    Matrices, // the matrix of the current mode
     MatrixMode,
     Raster,         // viewport, widths, modes
     Cap,            // enables or disables its first argument
@@ -43,9 +43,9 @@ enum class CullUse : uint8_t {
     Program,        // the current program
     Link,           // any program
     Uniforms,
-    Pops,         // state of the context
-    List,         // executes a display list
-    Immediate,     // begins a primitive
+    Pops,      // state of the context
+    List,      // executes a display list
+    Immediate, // begins a primitive
     EndImmediate,
     ReadsPicture, // perhaps into a buffer
     Everything

@@ -258,8 +258,9 @@ const culling::TilePlanes* Replay::planesFor(GLenum mode, replay::CullingProgram
     const bool isKnownArea =
         known.raster == its.state.rasterNumber() && known.area == c_->draw->drawn && known.margin == margin;
     if (isKnownView && isKnownArea) return known.planes ? &*known.planes : nullptr;
-    std::optional<culling::LinearView> before = std::move(known.linear);
-    known.linear = isKnownView ? before : linearView(nodeName, program, arrays);
+    std::optional<culling::LinearView> before;
+    if (culling_->plantsMatrix) before = known.linear;
+    if (!isKnownView) known.linear = linearView(nodeName, program, arrays);
     known.program = nodeName;
     known.view = its.state.matricesNumber();
     known.raster = its.state.rasterNumber();

@@ -32,7 +32,9 @@ public:
     // its name. Arrays of such names are not examined.
     void bufferDeleted(GLuint buffer) { ambiguous_.insert(buffer); }
     void unknownBuffersDeleted() { isAnyAmbiguous_ = true; }
-    [[nodiscard]] bool isAmbiguous(GLuint buffer) const { return isAnyAmbiguous_ || (!ambiguous_.empty() && ambiguous_.contains(buffer)); }
+    [[nodiscard]] bool isAmbiguous(GLuint buffer) const {
+        return isAnyAmbiguous_ || (!ambiguous_.empty() && ambiguous_.contains(buffer));
+    }
 
     int contexts = 0;             // of the share group
     bool hasVertexArrays = false; // some context has bound one
