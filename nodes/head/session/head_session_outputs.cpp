@@ -1,6 +1,6 @@
 // The session's proof that its outputs are alive (docs/reference/control.md, operation `outputs`).
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
