@@ -46,7 +46,7 @@ def metrics_errors(text):
     wrong = ["metrics of the dashboard that the page lacks: %s" % sorted(named - there)] if named - there else []
     promtool = shutil.which("promtool")
     if promtool is None:
-        print("    no check by promtool: tools/install-deps test installs it with prometheus")
+        print("    no check by promtool: it is not installed (Debian package prometheus, which also starts a server)")
         return wrong
     for metrics, is_right in ((text, True), (text + "# TYPE twice counter\ntwice 1\ntwice 1\n", False)):
         done = subprocess.run([promtool, "check", "metrics"], input=metrics.encode(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60, check=False)
