@@ -375,37 +375,7 @@ private:
     void writePart(const PicturePart& part, const PixelViewport& area);
     std::vector<std::byte> sliced_; // arguments of a draw, reduced to this node's piece
     // features/culling.cpp, culling_boxes.cpp, culling_audit.cpp
-    static replay::ContextCulling& cullingOf(ContextState& c);
-    void onCulling(uint16_t opcode, std::span<const std::byte> arguments);
-    void onCulledMemory();
-    void onDeletedBuffers(std::span<const std::byte> arguments);
-    void onCullingRecord(uint16_t opcode, std::span<const std::byte> arguments);
-    [[nodiscard]] culling::WhyWhole whyUnexamined(uint16_t opcode, const std::optional<replay::CullingDraw>& draw);
-    [[nodiscard]] replay::CullingProgram& cullingProgram(GLuint nodeName);
-    void bindSlice(GLuint nodeName, replay::CullingProgram& program);
-    [[nodiscard]] std::vector<float> uniformsOf(GLuint nodeName, const replay::CullingProgram& program);
-    [[nodiscard]] std::optional<culling::LinearView> linearView(GLuint nodeName, replay::CullingProgram* program,
-                                                                std::span<const replay::CullingArray> arrays);
-    const culling::TilePlanes* planesFor(GLenum mode, replay::CullingProgram* program,
-                                         std::span<const replay::CullingArray> arrays);
-    [[nodiscard]] culling::WhyWhole readArrays(const replay::CullingProgram* program,
-                                               std::vector<replay::CullingArray>& arrays);
-    [[nodiscard]] bool canCut(const replay::CullingDraw& draw, const replay::CullingProgram* program,
-                              const replay::CullingState::RasterState& raster) const;
-    [[nodiscard]] culling::Cut cutOf(const replay::CullingDraw& draw, culling::WhyWhole& why);
-    bool cullDraw(uint16_t opcode, std::span<const std::byte> arguments);
-    [[nodiscard]] std::optional<std::vector<std::byte>> bytesOfBuffer(GLuint buffer, uint64_t offset,
-                                                                      uint64_t sizeBytes);
-    culling::BoxCache::Entry& lookAtBoxes(const replay::CullingDraw& draw,
-                                          std::span<const replay::CullingArray> arrays);
-    [[nodiscard]] std::optional<culling::DrawBoxes> makeBoxesOf(const replay::CullingDraw& draw,
-                                                                std::span<const replay::CullingArray> arrays,
-                                                                GLuint indices, std::optional<uint32_t> restart);
-    void issue(const replay::CullingDraw& draw, std::span<const culling::VertexRange> ranges);
-    using DriverColorMasks = std::array<std::array<GLboolean, 4>, 8>;
-    [[nodiscard]] DriverColorMasks driverColorMasks() const;
-    void restoreDriverColorMasks(const DriverColorMasks& masks);
-    void auditDraw(const replay::CullingDraw& draw, culling::Cut cut);
+#include "nodes/replay/features/culling_members.inc"
     std::unique_ptr<replay::Culling> culling_; // null: off
     // context/front_buffer.cpp
     [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
