@@ -186,7 +186,7 @@ TEST_F(BalancerTest, assignsFewerTilesToABusierNode) {
     EXPECT_EQ(totals[0].kind, "tile_queue");
     EXPECT_GT(totals[0].moves, 0);
     EXPECT_GT(totals[0].efficiency, .9);
-    EXPECT_NEAR(totals[0].nodes[0].second + totals[0].nodes[1].second, 1, 1e-9);
+    EXPECT_NEAR(totals[0].nodes[0].part + totals[0].nodes[1].part, 1, 1e-9);
     EXPECT_EQ(areas_.size(), static_cast<size_t>(totals[0].moves) + 1);
 }
 
@@ -344,7 +344,7 @@ TEST_F(BalancerTest, reassignsTheChunksOfALostNode) {
     alive_[1] = false;
     balancer_->nodeLost(1);
     expectAllDraws();
-    EXPECT_EQ(balancer_->totals()[0].nodes[1].second, 0);
+    EXPECT_EQ(balancer_->totals()[0].nodes[1].part, 0);
     for (int i = 0; i < 30; ++i) drawRanges(costlyFirst);
     expectAllDraws();
     alive_[1] = true;
