@@ -37,7 +37,7 @@ struct CullingCounts {
     // vertices of draws that were not examined, by reason; they also count as drawn
     std::array<uint64_t, static_cast<size_t>(WhyWhole::Count)> unexamined{};
     uint64_t boxBytes = 0;           // largest memory of the boxes
-    uint64_t audits = 0, faults = 0; // audited draws, and those of which a sample was in the area
+    uint64_t audits = 0, faults = 0; // audited draws; draws with a sample in the area
 };
 
 } // namespace mural::culling

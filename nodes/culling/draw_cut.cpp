@@ -8,7 +8,7 @@ namespace {
 
 // Draws below this number of vertices are decided as a whole.
 constexpr uint64_t kMinCutVertices = 512;
-// A draw of which more than this share stays is drawn whole: ranges would cost more than they save.
+// A draw is drawn whole if more than this share of it stays: ranges would cost more than they save.
 constexpr double kMaxKeptShare = 0.9;
 
 class ClusterWalk {

@@ -23,7 +23,7 @@ private:
     using Aggregate = glslang::TIntermAggregate;
     using Variables = std::map<long long, SliceValue>;
     enum class Flow { Next, Break, Continue, Return };
-    // A place that is not followed; what it may assign becomes unknown.
+    // A statement that is not followed. Variables that it may assign become unknown.
     struct Unfollowed {
         const char* reason;
     };

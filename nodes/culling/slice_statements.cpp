@@ -9,7 +9,7 @@ using namespace glslang;
 
 namespace {
 
-// Executed statements of a shader, with those of unrolled loops.
+// Limit of executed statements of a shader, including unrolled loops.
 constexpr size_t kMaxSteps = 20'000;
 constexpr int kMaxDepth = 32;
 

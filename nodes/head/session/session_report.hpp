@@ -32,7 +32,7 @@ struct CullingTotals {
     int64_t verticesLeftOut = 0, verticesDrawn = 0;
     std::map<std::string, int64_t> verticesUnexamined; // by reason; they also count as drawn
     int64_t boxBytes = 0;                              // largest memory of the boxes
-    int64_t audits = 0, faults = 0;                    // audited draws, and those of which a sample was in the area
+    int64_t audits = 0, faults = 0;                    // audited draws; draws with a sample in the area
 };
 
 struct NodeTotals {

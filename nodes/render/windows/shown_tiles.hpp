@@ -1,4 +1,4 @@
-// What the wall windows of a node show. The windows share it with readers on other threads, so it never changes.
+// Tiles in the wall windows of a node. The windows share them with readers on other threads, so they never change.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ public:
     [[nodiscard]] const std::shared_ptr<OverlayPart>& overlay() const { return overlay_; }
     // Shows the tiles of the main window (the largest that swaps). With a barrier, waits for its other members.
     Result<void> show(const PlayerOutputs::Frame& frame, SwapBarrier* barrier);
-    // What the windows show; null: nothing yet.
+    // The tiles in the windows; null: none yet.
     [[nodiscard]] const std::shared_ptr<const ShownTiles>& shown() const { return shown_; }
 
     void windowGone(uint32_t client, uint32_t window) { mainWindow_.windowGone(client, window); }

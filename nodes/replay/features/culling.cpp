@@ -248,7 +248,7 @@ const culling::TilePlanes* Replay::planesFor(GLenum mode, replay::CullingProgram
     const auto& raster = its.state.raster(gl, group);
     const GLuint nodeName = program ? name(Kind::Program, c_->program) : 0;
     if (!c_->core) (void)its.state.matrices(gl);
-    size_t components = 0; // with those of each array in a digit of its own
+    size_t components = 0; // one octal digit per array
     for (const replay::CullingArray& array : arrays)
         components = components * 8 + static_cast<size_t>(array.components);
     const bool isKnownView = known.view == its.state.matricesNumber() && known.program == nodeName &&

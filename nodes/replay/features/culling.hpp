@@ -81,7 +81,7 @@ struct CullingPlanes {
     std::optional<culling::TilePlanes> planes; // null: the view is not linear
 };
 
-// What a context's draws are decided by.
+// State and planes for the draws of one context.
 struct ContextCulling {
     CullingState state;
     CullingPlanes planes;

@@ -70,7 +70,7 @@ void Replay::restoreDriverColorMasks(const DriverColorMasks& masks) {
     for (GLuint i = 0; i < masks.size(); ++i) gl.glColorMaski(i, masks[i][0], masks[i][1], masks[i][2], masks[i][3]);
 }
 
-// Counts the samples in this node's area of what is left out of a draw. Changes no pixel.
+// Counts the samples in this node's area of the omitted parts of a draw. Changes no pixel.
 void Replay::auditDraw(const replay::CullingDraw& draw, culling::Cut cut) {
     std::vector<culling::VertexRange> rest = cut == culling::Cut::Nothing
                                                  ? std::vector<culling::VertexRange>{{0, draw.count}}

@@ -1,6 +1,6 @@
-// Fixed function from buffers, in all modes: large meshes of which a node draws parts, and small draws of which it
-// leaves out most. Some meshes reach through the near plane, some primitives are wide, and glBegin draws quads between
-// draws that nodes may leave out.
+// Fixed function from buffers, in all modes. Nodes draw parts of the large meshes, and leave out most small draws. Some
+// meshes reach through the near plane, some primitives are wide, and glBegin draws quads between draws that nodes may
+// leave out.
 #include <array>
 #include <cmath>
 
@@ -62,7 +62,7 @@ void use(const Mesh& mesh) {
     glColorPointer(4, GL_UNSIGNED_BYTE, sizeof(Vertex), offsetOf(12));
 }
 
-// Quads of glBegin beside draws from buffers: the driver batches them by what is drawn in between.
+// Quads of glBegin beside draws from buffers. The draws in between decide how the driver batches the quads.
 void drawSmall(int frame) {
     for (int i = 0; i < 60; ++i) {
         glPushMatrix();

@@ -1,6 +1,6 @@
-// Scenes of the benchmark of culling, selected by CUT_SCENE: draws (many small ones), sphere, near (the same sphere
-// from near), shader (the sphere with a program), plain (everything is visible to every node). CUT_TRIANGLES is their
-// size. Without the variables, all scenes are drawn small.
+// Scenes of the benchmark of culling. CUT_SCENE selects one: draws (many small ones), sphere, near (the sphere from
+// near), shader (the sphere with a program), plain (visible to every node). CUT_TRIANGLES is its size. Without the
+// variables, all scenes are drawn small.
 #include <cmath>
 #include <cstdlib>
 #include <string>

@@ -1,5 +1,5 @@
-// Buffers whose contents change after nodes know them, by every way to write a buffer: what was at the left moves to
-// the right.
+// Buffers whose contents change after nodes know them, by every way to write a buffer. Each change moves a mesh from
+// the left to the right.
 #include <cstring>
 
 #include "tests/programs/culling/meshes.hpp"

@@ -1,5 +1,5 @@
-// What the connection of a browser requires from the page: replies to HTTP requests, and a place for its WebSocket. The
-// connections are templates of Beast, which compile for minutes, so they know nothing else of the page.
+// Replies to HTTP requests and accepts WebSockets, for the connections of browsers. Connections are templates of Beast,
+// which compile for minutes, so they include nothing else of the page.
 #pragma once
 
 #include <cstddef>

@@ -126,7 +126,7 @@ private:
     void take(int viewer, const InvalidMessage& invalid);
     // Performs operations that belong to a viewer's socket. Returns nullopt for all others.
     std::optional<Json> ofViewer(int viewer, const RequestMessage& request);
-    // Performs operations of the page. Returns false for those of the head.
+    // Performs operations of the page. Returns false for operations of the head.
     bool ofPage(const std::string& operation, const Json& arguments, const OnReply& onReply);
     void findProgram(int64_t nowNs);
     void watchCursor(int64_t nowNs);

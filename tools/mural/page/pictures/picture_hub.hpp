@@ -1,6 +1,6 @@
-// Pictures for all viewers. The hub requests each class of each source while somebody looks, and encodes it once per
-// coding: JPEG by quality, PNG of pictures that rest, and one H.264 stream. The flow control of each viewer decides
-// when it is sent. Used by the thread of its io_context; encoding has a thread of its own.
+// Pictures for all viewers. The hub requests each class of each source while a viewer watches, and encodes it once per
+// coding. Codings are JPEG by quality, PNG of pictures that rest, and one H.264 stream. The flow control of each viewer
+// decides when it is sent. Used by the thread of its io_context; encoding has a thread of its own.
 #pragma once
 
 #include <cstdint>
@@ -59,7 +59,7 @@ public:
     // The program has got input of this viewer up to this number.
     void inputReached(int viewer, uint32_t number);
 
-    // Requests and sends what is due. Call often while isWanted().
+    // Sends the requests and pictures that are due. Call often while isWanted().
     void tick(int64_t nowNs);
     [[nodiscard]] bool isWanted() const { return !viewers_.empty(); }
 
