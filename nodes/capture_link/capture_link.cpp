@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "common/ipc/descriptor_message.hpp"
 #include "common/ipc/futex.hpp"
 #include "streamcodec/registry_digest.hpp"
 
@@ -37,22 +38,11 @@ bool receiveWhole(int socket, std::span<std::byte> into, FileDescriptor* memory,
         pollfd poller{socket, POLLIN, 0};
         if (deadline.passed()) return false;
         if (poll(&poller, 1, static_cast<int>(deadline.leftNs(kNsPerS) / kNsPerMs) + 1) <= 0) continue;
-        alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-        iovec part{into.data(), into.size()};
-        msghdr message{};
-        message.msg_iov = &part;
-        message.msg_iovlen = 1;
-        message.msg_control = control;
-        message.msg_controllen = sizeof control;
-        const ssize_t n = recvmsg(socket, &message, MSG_CMSG_CLOEXEC);
-        if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+        FileDescriptor passed;
+        const ssize_t n = receiveWithDescriptor(socket, into, passed);
+        if (n < 0 && errno == EAGAIN) continue;
         if (n <= 0) return false;
-        const cmsghdr* c = CMSG_FIRSTHDR(&message);
-        if (c != nullptr && c->cmsg_type == SCM_RIGHTS && memory != nullptr) {
-            int fd = -1;
-            std::memcpy(&fd, CMSG_DATA(c), sizeof fd);
-            *memory = FileDescriptor(fd);
-        }
+        if (passed.valid() && memory != nullptr) *memory = std::move(passed);
         into = into.subspan(static_cast<size_t>(n));
     }
     return true;

@@ -57,6 +57,7 @@ Result<LaunchOptions> launchOptionsOf(const SessionConfig& config) {
     LaunchOptions options;
     options.isNative = !config.nodeProgram.empty();
     options.executable = options.isNative ? config.nodeProgram : launch::ownBinary();
+    options.mayFork = !options.isNative && config.glBackend != "osmesa";
     options.minNodes = config.minNodes;
     options.patienceMs = config.startTimeoutMs;
     LaunchSettings settings;

@@ -126,8 +126,13 @@ bool ChildProcess::running() {
 }
 
 std::string ChildProcess::describeEnd() const {
-    if (endSignal_ == 0) return "exit status " + std::to_string(exitStatus_);
-    return "signal " + std::to_string(endSignal_) + " (" + strsignal(endSignal_) + ")";
+    return launch::describeEnd(endSignal_ != 0 ? endSignal_ : W_EXITCODE(exitStatus_, 0));
+}
+
+std::string describeEnd(int waitStatus) {
+    if (!WIFSIGNALED(waitStatus)) return "exit status " + std::to_string(WEXITSTATUS(waitStatus));
+    const int signal = WTERMSIG(waitStatus);
+    return "signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
 }
 
 void ChildProcess::signal(int number) {

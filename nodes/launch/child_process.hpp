@@ -54,6 +54,9 @@ private:
     int endSignal_ = 0;
 };
 
+// Describes a status of waitpid(): "exit status 1", "signal 9 (Killed)".
+std::string describeEnd(int waitStatus);
+
 // Saves the signal mask and dispositions of this process for its children. Call before any signal is blocked or
 // ignored; only the first call has an effect.
 void rememberSignals();

@@ -13,6 +13,7 @@
 #include "common/log/process_log.hpp"
 #include "nodes/head/head.hpp"
 #include "nodes/launch/environment.hpp"
+#include "nodes/launch/forking/fork_server.hpp"
 #include "nodes/launch/launchers/starter/starter.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/render/node.hpp"
@@ -256,6 +257,11 @@ private:
             "accepts heads with the secret of this file\n\nExit status: 0, 1 if the node could not draw or wait, 2 for "
             "a bad argument.");
         mural::cli::describeWait(node, wait_);
+        CLI::App& forker = add(
+            "fork-nodes", "",
+            [this] { return mural::runForkServer(controlFd_, [this](int fd) { return runForkedNode(fd); }); }, "");
+        forker.group("");
+        forker.add_option("--control-fd", controlFd_)->required()->check(CLI::NonNegativeNumber);
         CLI::App& starter = add(
             "starter", "", [this] { return runStarter(); }, "");
         starter.group("");
@@ -299,6 +305,12 @@ private:
         if ((node_.connectFd >= 0) == !node_.connect.empty())
             return usageError("mural node", "exactly one of --connect-fd, --connect and --wait is required");
         return mural::runNode(node_, mural::makeReplay);
+    }
+
+    int runForkedNode(int connectFd) {
+        if (const auto started = mural::log::start("node", linePrefix("node")); !started) return kExitUsage;
+        node_.connectFd = connectFd;
+        return runNode();
     }
 
     void addTools() {

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <sys/socket.h>
 
+#include "common/ipc/descriptor_message.hpp"
 #include "common/log/log.hpp"
 #include "transport/shm/ring_connection.hpp"
 #include "transport/system_error.hpp"
@@ -15,59 +16,19 @@ namespace {
 
 constexpr char kGreeting = 'M'; // SCM_RIGHTS requires at least one byte of data
 
-// Room for exactly one descriptor.
-union DescriptorMessage {
-    cmsghdr alignment;
-    char bytes[CMSG_SPACE(sizeof(int))];
-};
-
 Result<void> sendDescriptor(int socket, int fd) {
-    char greeting = kGreeting;
-    iovec part{&greeting, 1};
-    DescriptorMessage control{};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control.bytes;
-    message.msg_controllen = sizeof control.bytes;
-    cmsghdr* header = CMSG_FIRSTHDR(&message);
-    header->cmsg_level = SOL_SOCKET;
-    header->cmsg_type = SCM_RIGHTS;
-    header->cmsg_len = CMSG_LEN(sizeof fd);
-    std::memcpy(CMSG_DATA(header), &fd, sizeof fd);
-    ssize_t sent = 0;
-    do {
-        sent = sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
-    } while (sent < 0 && errno == EINTR);
-    if (sent != 1) return Error{"shm: cannot pass the memory's descriptor: " + errnoText(errno)};
+    if (sendWithDescriptor(socket, std::as_bytes(std::span(&kGreeting, 1)), fd) != 1)
+        return Error{"shm: cannot pass the memory's descriptor: " + errnoText(errno)};
     return {};
 }
 
 // Never blocks: the offer is in the socket before the other process starts.
 Result<FileDescriptor> receiveDescriptor(int socket) {
     char greeting = 0;
-    iovec part{&greeting, 1};
-    DescriptorMessage control{};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control.bytes;
-    message.msg_controllen = sizeof control.bytes;
-    ssize_t got = 0;
-    do {
-        got = recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-    } while (got < 0 && errno == EINTR);
+    FileDescriptor memfd;
+    const ssize_t got = receiveWithDescriptor(socket, std::as_writable_bytes(std::span(&greeting, 1)), memfd);
     const std::string where = "shm: descriptor " + std::to_string(socket);
-    if (got < 0) {
-        return Error{where + ": " + errnoText(errno) + "; pass the descriptor from offerSharedMemory"};
-    }
-    const cmsghdr* header = CMSG_FIRSTHDR(&message);
-    int fd = -1;
-    if (header != nullptr && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_RIGHTS &&
-        header->cmsg_len == CMSG_LEN(sizeof fd)) {
-        std::memcpy(&fd, CMSG_DATA(header), sizeof fd);
-    }
-    FileDescriptor memfd(fd);
+    if (got < 0) return Error{where + ": " + errnoText(errno) + "; pass the descriptor from offerSharedMemory"};
     if (got != 1 || greeting != kGreeting || !memfd.valid()) {
         return Error{where + " carries no shared memory: it was opened before, or the peer has ended"};
     }

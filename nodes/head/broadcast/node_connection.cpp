@@ -101,9 +101,11 @@ void NodeConnection::flushNow() {
 }
 
 void NodeConnection::lose(const std::string& why) {
-    log::debug(log::Topic::Node, "gives up node ", location_.node, ": ", why);
     const std::lock_guard lock(reasonMutex_); // release() must not free the connection meanwhile
-    if (reason_.empty()) reason_ = why;
+    if (reason_.empty()) {
+        log::debug(log::Topic::Node, "gives up node ", location_.node, ": ", why);
+        reason_ = why;
+    }
     if (alive_.exchange(false)) connection_->close();
 }
 

@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "common/ipc/descriptor_message.hpp"
 #include "common/log/log.hpp"
 #include "nodes/launch/session_socket.hpp"
 
@@ -70,27 +71,13 @@ bool waitWritable(int fd, Deadline deadline) {
 // The descriptor travels with the first byte.
 bool sendAll(int socket, std::span<const std::byte> bytes, int fdToPass, Deadline deadline) {
     while (!bytes.empty()) {
-        iovec part{const_cast<std::byte*>(bytes.data()), bytes.size()};
-        msghdr message{};
-        message.msg_iov = &part;
-        message.msg_iovlen = 1;
-        alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-        if (fdToPass >= 0) {
-            message.msg_control = control;
-            message.msg_controllen = sizeof(control);
-            cmsghdr* header = CMSG_FIRSTHDR(&message);
-            header->cmsg_level = SOL_SOCKET;
-            header->cmsg_type = SCM_RIGHTS;
-            header->cmsg_len = CMSG_LEN(sizeof(int));
-            std::memcpy(CMSG_DATA(header), &fdToPass, sizeof(int));
-        }
-        const ssize_t n = sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+        const ssize_t n = sendWithDescriptor(socket, bytes, fdToPass);
         if (n > 0) {
             bytes = bytes.subspan(static_cast<size_t>(n));
             fdToPass = -1;
             continue;
         }
-        const bool again = errno == EINTR || errno == EAGAIN || errno == EWOULDBLOCK;
+        const bool again = errno == EAGAIN || errno == EWOULDBLOCK;
         if (!again || !waitWritable(socket, deadline)) return false;
     }
     return true;

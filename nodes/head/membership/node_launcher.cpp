@@ -58,13 +58,21 @@ Result<void> startLocal(LaunchedNode& node, const LaunchOptions& options) {
     auto offer = offerSharedMemory(kLocalBytes);
     if (!offer) return offer.error();
     const FileDescriptor peerFd(offer->peerFd);
+    node.connection = std::move(offer->connection);
+    if (options.forker) {
+        auto forked = options.forker->fork(peerFd.get());
+        if (forked) {
+            node.process = std::move(*forked);
+            return {};
+        }
+        log::debug(log::Topic::Launch, "a node starts as a new process: ", forked.error().message);
+    }
     NodeCommand command;
     command.arguments = {options.executable, nodeWord(options), "--connect-fd", std::to_string(peerFd.get())};
     command.inheritFd = peerFd.get();
     auto process = NodeProcess::start(command);
     if (!process) return process.error();
     node.process = std::move(*process);
-    node.connection = std::move(offer->connection);
     return {};
 }
 
@@ -193,8 +201,8 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
 
 } // namespace
 
-Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, const LaunchOptions& options,
-                                              StartProgress& progress, const std::function<bool()>& cancelled) {
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, LaunchOptions& options, StartProgress& progress,
+                                              const std::function<bool()>& cancelled) {
     const int64_t beganNs = monotonicNowNs();
     auto gate = openGate(plan);
     if (!gate) return gate.error();
@@ -202,6 +210,12 @@ Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, const Lau
     for (const NodePlan& planned : plan.nodes) {
         nodes.emplace_back().plan = planned;
         progress.add(planned.node, planned.where);
+    }
+    const auto shared = std::ranges::count(plan.nodes, NodeReach::SharedMemory, &NodePlan::reach);
+    if (options.mayFork && !options.forker && shared > 1) {
+        auto forker = NodeForker::start(options.executable);
+        if (!forker) return Error{"the process that forks nodes did not start: " + forker.error().message};
+        options.forker = std::move(*forker);
     }
     // Remote nodes first, because their way is longer.
     if (const auto started = *gate ? startRemote(plan, nodes, options, **gate) : Result<void>(); !started)

@@ -10,6 +10,7 @@
 #include "nodes/head/membership/node_acceptor.hpp"
 #include "nodes/head/membership/start_progress.hpp"
 #include "nodes/head/planning/node_plan.hpp"
+#include "nodes/launch/forking/node_forker.hpp"
 #include "nodes/launch/launchers/launcher.hpp"
 #include "transport/connection.hpp"
 
@@ -37,12 +38,16 @@ struct LaunchOptions {
     int64_t lateMs = 5'000;
     int64_t patienceMs = 30'000; // for the connection of a node
     bool isNative = false;       // nodes run a program with the native API instead of `mural`
+    // Forks nodes that use shared memory. launchNodes() starts it for two nodes and more; null: nodes are new
+    // processes.
+    std::shared_ptr<NodeForker> forker = {};
+    bool mayFork = false; // `executable` has the command fork-nodes, and nodes use the driver that it loads
 };
 
 // Call from a thread that outlives the nodes. Polls `cancelled`. Shows a table of late nodes, and again if it fails.
 // progress: gains the nodes. Errors: fewer nodes than required have connected.
-Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, const LaunchOptions& options,
-                                              StartProgress& progress, const std::function<bool()>& cancelled);
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, LaunchOptions& options, StartProgress& progress,
+                                              const std::function<bool()>& cancelled);
 
 // Starts one node without waiting for its connection.
 Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& options);

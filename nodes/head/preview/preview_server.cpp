@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "common/base/clock.hpp"
+#include "common/ipc/descriptor_message.hpp"
 #include "common/ipc/user_socket.hpp"
 #include "common/log/log.hpp"
 #include "nodes/output/reduce_picture.hpp"
@@ -32,27 +33,6 @@ constexpr int kPreviewSliceMs = 60'000;        // offers, pages and the destruct
 
 Error previewError(const std::string& path, const std::string& why) {
     return Error{"the socket " + path + " cannot be opened: " + why + "; pages show no pictures of this session"};
-}
-
-// Receives a wish, and the descriptor that may come with it. Returns the number of bytes as recvmsg() does.
-ssize_t receiveWish(int socket, PictureWish& wish, FileDescriptor& memory) {
-    iovec part{&wish, sizeof wish};
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    const ssize_t n = recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-    if (n < 0) return n;
-    for (cmsghdr* at = CMSG_FIRSTHDR(&message); at != nullptr; at = CMSG_NXTHDR(&message, at)) {
-        if (at->cmsg_level != SOL_SOCKET || at->cmsg_type != SCM_RIGHTS || at->cmsg_len < CMSG_LEN(sizeof(int)))
-            continue;
-        int fd = -1;
-        std::memcpy(&fd, CMSG_DATA(at), sizeof fd);
-        memory = FileDescriptor(fd);
-    }
-    return n;
 }
 
 } // namespace
@@ -181,8 +161,8 @@ void PreviewServer::acceptPage() {
 void PreviewServer::receive(Page& page) {
     PictureWish wish;
     FileDescriptor memory;
-    const ssize_t n = receiveWish(page.socket.get(), wish, memory);
-    if (n < 0 && (errno == EAGAIN || errno == EINTR)) return;
+    const ssize_t n = receiveWithDescriptor(page.socket.get(), std::as_writable_bytes(std::span(&wish, 1)), memory);
+    if (n < 0 && errno == EAGAIN) return;
     const bool isValid = n == static_cast<ssize_t>(sizeof wish) && wish.version == kPictureWishVersion &&
                          wish.maxWidth > 0 && wish.maxHeight > 0 && wish.maxWidth <= INT32_MAX &&
                          wish.maxHeight <= INT32_MAX;

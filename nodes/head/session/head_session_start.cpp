@@ -341,11 +341,13 @@ bool HeadSession::isOneMachine() const {
 trace::About HeadSession::aboutTrace() {
     trace::About about;
     about.version = MURAL_VERSION;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const NodeCapabilities& facts : facts_)
-            about.nodes.push_back(facts.renderer + ", GL " + std::to_string(facts.glVersion / 10) + "." +
-                                  std::to_string(facts.glVersion % 10));
+    const auto plan = currentPlan(); // facts_ also has nodes that earlier plans used
+    const std::lock_guard lock(mutex_);
+    for (const NodePlan& node : plan->nodes) {
+        if (node.isVacant) continue;
+        const NodeCapabilities& facts = facts_[static_cast<size_t>(node.node)];
+        about.nodes.push_back(facts.renderer + ", GL " + std::to_string(facts.glVersion / 10) + "." +
+                              std::to_string(facts.glVersion % 10));
     }
     return about;
 }
