@@ -17,7 +17,7 @@ import time
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
-from harness import cases, pictures, session  # noqa: E402
+from harness import cases, length, pictures, session  # noqa: E402
 from harness.control import PATIENCE_SECONDS, ctl, result_of  # noqa: E402
 
 SIZE = "250x190"
@@ -128,7 +128,7 @@ def options(*words, joined, kept=0):
     return perform
 
 
-@cases.case
+@cases.long_case
 def layouts_without_windows(context):
     order = [("2D", 3), ("DB", 2), ("turns", 2), ("simple", 1), ("DB", 2), ("2D", 3), ("turns", 2), ("simple", 1)]
     return exact_changes(context, ["--config", LAYOUTS, "--all-local", "--display", "none"], [layout("wall", *entry) for entry in order])
@@ -367,7 +367,7 @@ def spare_host(context):
     return moves_to_spare(context, ["127.0.0.2", "127.0.0.3"], ["--tiles", "2x1"], after)
 
 
-@cases.case
+@cases.long_case
 def spare_of_the_only_node(context):
     """The programs wait for the spare host, since no node is left."""
     return moves_to_spare(context, ["127.0.0.3"], [], lambda run: None)
@@ -383,7 +383,7 @@ def killed_nodes(context):
         if not drawing.begins():
             return "no frames"
         done = {0: 0, 1: 0}
-        for count in range(8):
+        for count in range(8 if length.LONG else 4):
             words = numbers.choice([("--tiles", "2x2"), ("--db", "2"), ("--balance", "auto", "--local-nodes", "3"), ("--tiles", "2x1")])
             outcome = []
             changing = threading.Thread(target=lambda: outcome.append(change(context, run, *words)))

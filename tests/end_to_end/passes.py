@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 
-from harness import cases, pictures, programs
+from harness import cases, length, pictures, programs
 
 FRAMES = 4
 SIZE = (253, 191)
@@ -81,7 +81,7 @@ def by_turns(context, program, turns, frames=9):
 @case
 def dplex_pictures_are_all_there(context, notes):
     """Every frame arrives, in order, from programs that clear, that do not, and that copy their window."""
-    return first_wrong({program: by_turns(context, program, 3) for program in ("immediate", "es2_scene", "core_arrays", "frames_kept", "pixels_read")})
+    return first_wrong({program: by_turns(context, program, 3) for program in length.some(("immediate", "es2_scene", "frames_kept", "core_arrays", "pixels_read"))})
 
 
 @case
@@ -132,7 +132,7 @@ def sampled(context, program, arguments, samples, size=SIZE):
 
 def sampled_ways(context, notes, scenes):
     wrong = None
-    for program, arguments, samples, size in scenes:
+    for program, arguments, samples, size in length.some(scenes):
         error = sampled(context, program, arguments, samples, size)
         name = "%s %d" % (" ".join(arguments[1:]) or program, samples)
         notes.append("%s: %.3f" % (name, error))
@@ -154,7 +154,7 @@ def passes_copy_their_own_pixels(context, notes):
     ways = {"samples": (["--subpixel", "2"], ["--subpixel", "2", "--tiles", "2x1", "--local-nodes", "4"]),
             "eyes": (["--stereo", "anaglyph"], ["--stereo", "anaglyph", "--tiles", "1x2", "--local-nodes", "4"])}
     return first_wrong({"%s, %s" % (program, name): differing(through(context, whole, program), through(context, tiles, program))
-                        for program in ("copied_scene", "pixels_read", "es2_scene", "copied_samples") for name, (whole, tiles) in ways.items()})
+                        for program, (name, (whole, tiles)) in length.pairs(("copied_scene", "pixels_read", "es2_scene", "copied_samples"), ways.items())})
 
 
 # ---- pixels of a kernel
@@ -162,8 +162,9 @@ def passes_copy_their_own_pixels(context, notes):
 @case
 def pixel_polygons_are_near(context, notes):
     wrong = None
-    for program, arguments, kernel in (("pass_scene", ["--draw", "mvp"], "2x1"), ("pass_scene", ["--draw", "fixed"], "3"), ("pass_scene", ["--draw", "mvp"], "2x2"),
-                                       ("pass_scene", ["--draw", "geometry"], "3x2"), ("pass_scene_es2", [], "2x2")):
+    for program, arguments, kernel in length.some((
+            ("pass_scene", ["--draw", "mvp"], "2x1"), ("pass_scene", ["--draw", "fixed"], "3"), ("pass_scene_es2", [], "2x2"),
+            ("pass_scene", ["--draw", "mvp"], "2x2"), ("pass_scene", ["--draw", "geometry"], "3x2"))):
         plain = native(context, program, arguments)
         got = through(context, ["--pixel", kernel], program, arguments)
         worst = min(pictures.decibels(a, b) for a, b in zip(plain, got))
@@ -193,7 +194,7 @@ def pixel_fragments_have_wall_positions(context, notes):
 def pixel_is_exact_where_pixels_are_copied(context, notes):
     programs_of = (("pixels_read", []), ("es2_scene", []), ("pass_scene", ["--draw", "blit"]))
     return first_wrong({"%s %s" % (program, kernel): differing(native(context, program, arguments), through(context, ["--pixel", kernel], program, arguments))
-                        for program, arguments in programs_of for kernel in ("2x1", "3x2")})
+                        for (program, arguments), kernel in length.pairs(programs_of, ("2x1", "3x2"))})
 
 
 @case
@@ -202,7 +203,7 @@ def pixel_is_exact_with_explicit_levels(context, notes):
     the next frame on."""
     scenes = (("pass_scene", ["--draw", "textured"]), ("pass_scene_es2", ["--draw", "textured"]))
     wrong = first_wrong({"%s %s" % (program, kernel): differing(native(context, program, arguments), through(context, ["--pixel", kernel], program, arguments))
-                         for program, arguments in scenes for kernel in ("2x1", "3x2")})
+                         for (program, arguments), kernel in length.pairs(scenes, ("2x1", "3x2"))})
     levels, plain = (native(context, "pass_scene", ["--draw", way]) for way in ("textured", "fixed"))
     return wrong or (None if differing(levels, plain) else "no level was looked up")
 
@@ -229,13 +230,12 @@ def seen(context, program, arguments, eye):
 
 def seen_ways(context, notes, scenes):
     wrong = None
-    for program, arguments in scenes:
+    for (program, arguments), eye in length.pairs(scenes, (-EYE, EYE)):
         name = arguments[-1] if arguments else program
-        for eye in (-EYE, EYE):
-            worst, kept, apart = seen(context, program, arguments, eye)
-            notes.append("%s %s: %.1f dB (%.1f from the middle)" % (name, "left" if eye < 0 else "right", worst, apart))
-            if worst < 40 or not kept:
-                wrong = wrong or "%s: %.1f dB%s" % (name, worst, "" if kept else ", the overlay has moved")
+        worst, kept, apart = seen(context, program, arguments, eye)
+        notes.append("%s %s: %.1f dB (%.1f from the middle)" % (name, "left" if eye < 0 else "right", worst, apart))
+        if worst < 40 or not kept:
+            wrong = wrong or "%s: %.1f dB%s" % (name, worst, "" if kept else ", the overlay has moved")
     return wrong
 
 
@@ -331,7 +331,7 @@ def in_room(context, program, arguments, size, compounds=""):
 def room_ways(context, notes, scenes, size=(160, 120)):
     """Compares every wall of a room with a native picture with that wall's frustum."""
     wrong = None
-    for program, arguments in scenes:
+    for program, arguments in length.some(scenes):
         arguments = list(arguments) + ["--around"]
         got = in_room(context, program, arguments, size)
         worst, apart = math.inf, math.inf
@@ -360,7 +360,7 @@ def room_ways(context, notes, scenes, size=(160, 120)):
 @case
 def room_screens(context, notes):
     """Walls at right angles, seen off-centre: each as a program with that wall's frustum draws it."""
-    return room_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "framebuffer")] + [("pass_scene_es2", [])])
+    return room_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("fixed", "legacy", "mvp", "matrices", "framebuffer", "block", "geometry")] + [("pass_scene_es2", [])])
 
 
 def shown_and_saved(context, command, options, titles, out, frames=400):

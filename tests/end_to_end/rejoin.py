@@ -213,7 +213,7 @@ def one_node(context):
     return kill_and_compare(context)
 
 
-@case
+@cases.long_case
 def several_one_after_the_other(context):
     return kill_and_compare(context, victims=(1, 0, 1))
 
@@ -328,13 +328,13 @@ def areas_that_are_balanced(context):
             kill_and_compare(context, tiles="balance load", missing_columns=range(WIDTH), victims=(0, 1), maximum=24))
 
 
-@case
+@cases.long_case
 def areas_at_random(context):
     """Areas that change with every frame: a returning node must have the current frame's."""
     return kill_and_compare(context, tiles="queue 16x16", missing_columns=range(WIDTH), victims=(1, 0, 1), environment={"MURAL_PLANT": "areas"})
 
 
-@case
+@cases.long_case
 def areas_of_frames_over_earlier_frames(context):
     """Windows that are never cleared keep their areas: the returning node draws everything from the start, and then has
     the same."""
@@ -452,18 +452,18 @@ def ranges_of_tiles(context):
     return ranges_come_back(context, ((3,), (2,), (1, 2)), 4, by_ranges("binary-swap", 2) + ("--local-nodes", "4"), tiles="2x1")
 
 
-@case
+@cases.long_case
 def ranges_in_turns(context):
     """Two time-multiplexed pictures, of two nodes each."""
     return ranges_come_back(context, ((1,), (2,), (0,)), 4, by_ranges("streaming", 2) + ("--dplex", "2"))
 
 
-@case
+@cases.long_case
 def ranges_with_delta(context):
     return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("direct-send", 2) + ("--delta", "on"))
 
 
-@case
+@cases.long_case
 def ranges_by_tcp(context):
     return ranges_come_back(context, ((1,), (0,)), 3, by_ranges("radix-k", 3) + ("--nodes", "localhost,localhost,localhost", "--stream", "tcp"), where="localhost")
 

@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 
-from harness import display, pictures, programs, shared_nodes
+from harness import display, length, pictures, programs, shared_nodes
 
 
 def parse_arguments(description, add_arguments):
@@ -28,6 +28,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
     parser.add_argument("--programs", help="programs and groups, separated by commas; default all")
     parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
+    parser.add_argument("--long-layouts", help="layouts of a long run, MURAL_LONG_TESTS=1; default those of --layouts")
     parser.add_argument("--tile-queue", metavar="WxH", help="nodes take tiles of this size from a queue; layouts are numbers of nodes then")
     parser.add_argument("--min-changes", type=int, default=0, metavar="N", help="fail when areas or shares changed less often, in all runs together: then nothing was tried")
     parser.add_argument("--size", default="1000x777", help="of the programs' windows")
@@ -44,7 +45,10 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--keep", metavar="FOLDER", help="keep all pictures and logs there")
     parser.add_argument("--list", action="store_true", help="show the programs by group and stop")
     add_arguments(parser)
-    return parser.parse_args()
+    arguments = parser.parse_args()
+    if length.LONG and arguments.long_layouts:
+        arguments.layouts = arguments.long_layouts
+    return arguments
 
 
 def list_programs():

@@ -3,15 +3,23 @@
 import argparse
 import os
 import signal
+import time
 
-from harness import display, session
+from harness import display, length, session
 
 CASES = {}  # name: function(context) → None or an error
+LONG_CASES = set()  # names of cases that only long runs include
 
 
 def case(function):
     CASES[function.__name__] = function
     return function
+
+
+def long_case(function):
+    """Registers a case that only long runs include, because other cases cover most of it."""
+    LONG_CASES.add(function.__name__)
+    return case(function)
 
 
 class Context:
@@ -70,6 +78,11 @@ def main(description):
     if arguments.list:
         print("\n".join(chosen))
         return 0
+    by_name = [name for name in chosen if name in (arguments.cases or "").split(",")]
+    left_out = [] if length.LONG else [name for name in chosen if name in LONG_CASES and name not in by_name]
+    chosen = [name for name in chosen if name not in left_out]
+    if left_out:
+        print("only with MURAL_LONG_TESTS=1: " + ", ".join(left_out))
     if not chosen:
         raise SystemExit("no case begins with \"%s\"; --list shows all" % arguments.cases)
     build = os.path.abspath(arguments.build)
@@ -78,8 +91,9 @@ def main(description):
     with display.PrivateDisplay() as display_name:
         context = Context(build, mural, display_name)
         for name in chosen:
+            began = time.monotonic()
             result = CASES[name](context)
             wrong += result is not None
-            print("%-32s %s" % (name, "right" if result is None else "WRONG: " + result), flush=True)
+            print("%-32s %5.1f s  %s" % (name, time.monotonic() - began, "right" if result is None else "WRONG: " + result), flush=True)
     print("%d cases, %d wrong" % (len(chosen), wrong))
     return 1 if wrong else 0
