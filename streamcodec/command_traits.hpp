@@ -32,7 +32,8 @@ enum class Trait : uint8_t {
     ClearsDepthStencil,
     Begin,
     End,
-    Vertex, // of the open primitive
+    Vertex,   // of the open primitive
+    Position, // a Vertex whose only arguments are its coordinates
     CallList,
 
     // Other work

@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "nodes/culling/payoff.hpp"
 #include "nodes/culling/vertex_boxes.hpp"
 
 namespace mural::culling {
@@ -47,8 +48,7 @@ public:
         std::shared_ptr<const DrawBoxes> boxes; // null: not made yet, or impossible
         bool isImpossible = false;
         uint32_t sightings = 0;
-        // Draws in a row from which nothing was left out, and draws for which clusters are not tried.
-        uint32_t vain = 0, pause = 0, lastPause = 0;
+        Payoff payoff; // of clusters
 
         [[nodiscard]] bool wantsBoxes() const { return !boxes && !isImpossible && sightings >= 2; }
     };

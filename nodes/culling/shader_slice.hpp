@@ -53,8 +53,8 @@ struct ShaderSlice {
     [[nodiscard]] bool isUsable() const { return reason.empty(); }
 };
 
-// Slices the text of a vertex shader: GLSL 1.10 to 4.60. Anything that the slice cannot represent, and on which the
-// position depends, is a reason. Any thread, one at a time.
-[[nodiscard]] ShaderSlice sliceOf(const std::string& text);
+// Slices the text of a vertex shader: GLSL 1.10 to 4.60 and ES 1.00 to 3.20. Anything that the slice cannot represent,
+// and on which the position depends, is a reason. isEs: of a context of OpenGL ES. Any thread, one at a time.
+[[nodiscard]] ShaderSlice sliceOf(const std::string& text, bool isEs = false);
 
 } // namespace mural::culling

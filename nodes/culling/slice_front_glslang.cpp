@@ -14,7 +14,8 @@ namespace mural::culling {
 
 namespace {
 
-constexpr int kDefaultVersion = 110;
+// Versions of texts without #version.
+constexpr int kDefaultVersion = 110, kDefaultEsVersion = 100;
 
 // Names that the driver and glslang define alike. A text that asks for others may take another branch there.
 constexpr std::string_view kAgreedNames[] = {"GL_ES", "GL_FRAGMENT_PRECISION_HIGH", "GL_core_profile",
@@ -43,7 +44,7 @@ bool asksDriver(std::string_view text) {
 
 } // namespace
 
-ShaderSlice sliceOf(const std::string& text) {
+ShaderSlice sliceOf(const std::string& text, bool isEs) {
     static std::mutex mutex; // glslang's tables are of the process
     const std::lock_guard lock(mutex);
     static const bool isReady = glslang::InitializeProcess();
@@ -60,7 +61,9 @@ ShaderSlice sliceOf(const std::string& text) {
     glslang::TShader shader(EShLangVertex);
     const char* const source = text.c_str();
     shader.setStrings(&source, 1);
-    if (!shader.parse(GetDefaultResources(), kDefaultVersion, false, EShMsgRelaxedErrors) ||
+    const int version = isEs ? kDefaultEsVersion : kDefaultVersion;
+    const EProfile profile = isEs ? EEsProfile : ENoProfile;
+    if (!shader.parse(GetDefaultResources(), version, profile, false, false, EShMsgRelaxedErrors) ||
         !shader.getIntermediate() || !shader.getIntermediate()->getTreeRoot())
         return refuse("glslang refuses it");
     return SliceInterpreter(shader.getIntermediate()->getTreeRoot()).slice();

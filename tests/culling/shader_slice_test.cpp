@@ -143,5 +143,21 @@ TEST(ShaderSlice, conditionsThatRoundingMayChangeHaveNoView) {
     EXPECT_EQ(SliceView(slice).viewFor(far)->x.factor[inputOf(slice, "a", 0)], 1);
 }
 
+TEST(ShaderSlice, parsesTextsOfOpenGLES) {
+    const std::string text = "attribute vec4 position;\nuniform mat4 matrix;\n"
+                             "#ifdef GL_ES\nvoid main() { gl_Position = matrix * position; }\n"
+                             "#else\nvoid main() { gl_Position = matrix[0]; }\n#endif\n";
+    const ShaderSlice es = sliceOf(text, true), desktop = sliceOf(text, false);
+    ASSERT_TRUE(es.isUsable()) << es.reason;
+    ASSERT_TRUE(desktop.isUsable()) << desktop.reason;
+    EXPECT_EQ(es.inputs.size(), 4U);
+    EXPECT_TRUE(desktop.inputs.empty()) << "the other branch";
+    const ShaderSlice es3 = sliceOf("#version 300 es\nprecision mediump float;\nin vec3 position;\n"
+                                    "uniform mat4 matrix;\nvoid main() { gl_Position = matrix * vec4(position, 1.0); }",
+                                    true);
+    ASSERT_TRUE(es3.isUsable()) << es3.reason;
+    EXPECT_EQ(es3.inputs.size(), 3U);
+}
+
 } // namespace
 } // namespace mural::culling

@@ -225,6 +225,12 @@ def with_delta(context):
 
 
 @case
+def with_culling(context):
+    """The returning node knows no contents of buffers yet. The audit ends the run with status 1 for a fault."""
+    return kill_and_compare(context, options=("--culling", "audit"), environment={"SCENE_LISTS": "1"}, victims=(1, 0))
+
+
+@case
 def by_tcp(context):
     """Nodes as on other machines: started again with the same command, connected again by TCP."""
     return kill_and_compare(context, options=("--nodes", "localhost,localhost", "--stream", "tcp"), where="localhost")

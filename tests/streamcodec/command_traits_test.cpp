@@ -103,6 +103,7 @@ TEST(CommandTraits, areWindowDrawsWhenTheyAccessFramebuffers) {
     const Implication rules[] = {
         {"output", kWrites, draws, {}},
         {"vertices", has(Vertex), draws, {}},
+        {"positions", has(Position), has(Vertex), {}},
         {"reads", has(ReadsFramebuffer), draws, {}},
         {"nothing else", draws, has(DrawClass, ReadsFramebuffer), {}},
     };

@@ -11,6 +11,7 @@
 #include "nodes/replay/engine/handle_table.hpp"
 #include "nodes/replay/engine/name_table.hpp"
 #include "nodes/replay/features/culling_state.hpp"
+#include "nodes/replay/features/list_sections.hpp"
 #include "nodes/replay/features/projection_detection.hpp"
 #include "nodes/replay/programs/program_rewriter.hpp"
 #include "nodes/replay/programs/program_sources.hpp"
@@ -32,6 +33,9 @@ struct DisplayListItem {
     bool plain = true;                         // changes no state that decides whether draws may be shared
     std::vector<std::byte> record;             // a command that the node executes itself; empty: native
     std::vector<std::vector<std::byte>> blobs; // blobs of the record
+    // of a native list that culling may leave out; null: it has other commands
+    std::shared_ptr<const ListedPrimitives> primitives;
+    unsigned cullingChanges = 0; // parts of CullingState that the native list changes
 };
 
 struct DisplayList {

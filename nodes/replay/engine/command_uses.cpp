@@ -62,6 +62,11 @@ CullUse cullUseOfBind(ObjectType object) {
     }
 }
 
+// Cells of the state of polygons that move no position.
+bool keepsPositions(StateCell cell) {
+    return cell == StateCell::FrontFace || cell == StateCell::CullFace || cell == StateCell::PolygonOffset;
+}
+
 CullUse cullUseByEffect(uint16_t opcode) {
     const CommandEffect& effect = effectOf(opcode);
     switch (effect.kind) {
@@ -72,6 +77,7 @@ CullUse cullUseByEffect(uint16_t opcode) {
     case EffectKind::MatrixPop: return CullUse::Matrices;
     case EffectKind::Cell:
     case EffectKind::Limit:
+        if (keepsPositions(effect.cell)) return CullUse::None;
         return effect.attribBits == 0 || (effect.attribBits & kRasterBits) ? CullUse::Raster : CullUse::None;
     case EffectKind::MatrixMode: return CullUse::MatrixMode;
     case EffectKind::Cap: return CullUse::Cap;

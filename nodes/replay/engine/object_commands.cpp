@@ -256,27 +256,33 @@ void Replay::glNewList(GLuint list, GLenum mode) {
     c_->compilesPrimitive = false;
     c_->building = {};
     const GLuint first = gl.glGenLists(1);
-    c_->building.items.push_back({.native = first, .record = {}, .blobs = {}});
+    c_->building.items.push_back({.native = first, .record = {}, .blobs = {}, .primitives = {}});
     gl.glNewList(first, mode); // compile-and-execute is left to the driver: list playback may draw differently
 }
 void Replay::glEndList() {
     if (!c_->compiling) return;
     gl.glEndList();
+    if (culling_) endListSection();
     const GLuint list = c_->compiling;
     c_->compiling = 0;
     applyTileValues(); // the values may have changed during compilation
     DisplayList& slot = c_->shared->lists[list];
-    for (const DisplayListItem& item : slot.items) {
-        if (item.record.empty()) gl.glDeleteLists(item.native, 1);
-    }
+    deleteNativeLists(slot);
     slot = std::move(c_->building);
     c_->building = {};
+}
+
+void Replay::deleteNativeLists(const DisplayList& list) {
+    for (const DisplayListItem& item : list.items) {
+        if (item.record.empty()) gl.glDeleteLists(item.native, 1);
+        if (item.primitives && item.primitives->after) gl.glDeleteLists(item.primitives->after, 1);
+    }
 }
 
 // Stores a command that a native list cannot contain between two native lists. Its blobs are stored with it, because
 // the list may be called repeatedly.
 void Replay::compileSplit(std::span<const std::byte> bytes) {
-    DisplayListItem item{.record = {bytes.begin(), bytes.end()}, .blobs = {}};
+    DisplayListItem item{.record = {bytes.begin(), bytes.end()}, .blobs = {}, .primitives = {}};
     for (bool found = true; found;) {
         takeBlob(found);
         if (found) item.blobs.push_back(std::move(taken_.back()));
@@ -290,12 +296,13 @@ void Replay::compileSplit(std::span<const std::byte> bytes) {
 // Continues with another native list. Calls made in `between` are in no list.
 void Replay::nextNativeList(const std::function<void()>& between) {
     gl.glEndList();
+    if (culling_) endListSection();
     const GLuint compiling = std::exchange(c_->compiling, 0);
     between();
     onTurnOfList();
     c_->compiling = compiling;
     const GLuint next = gl.glGenLists(1);
-    c_->building.items.push_back({.native = next, .record = {}, .blobs = {}});
+    c_->building.items.push_back({.native = next, .record = {}, .blobs = {}, .primitives = {}});
     gl.glNewList(next, c_->compileMode);
 }
 
@@ -315,6 +322,7 @@ void Replay::runList(GLuint list) {
         if (item.record.empty()) {
             if (takesRanges() && !c_->compiling && !onRangeList(item)) c_->rangeKnown = false;
             if (moves()) onNativeList();
+            if (culling_ && cullListed(item)) continue;
             gl.glCallList(item.native);
             continue;
         }
@@ -369,9 +377,7 @@ void Replay::glDeleteLists(GLuint list, GLsizei range) {
             if (range > 1 << 16 && i > 1 << 16) break; // an implausible range: deletes existing lists only
             continue;
         }
-        for (const DisplayListItem& item : it->second.items) {
-            if (item.record.empty()) gl.glDeleteLists(item.native, 1);
-        }
+        deleteNativeLists(it->second);
         lists.erase(it);
     }
 }

@@ -51,6 +51,7 @@ bool Replay::record(std::span<const std::byte> bytes) {
     const auto arguments = bytes.subspan(record::headerBytesOf(header));
     ++counts_.commands;
     bool ok = true;
+    if (c_->compiling && culling_) onListed(opcode, arguments);
     if (c_->compiling) onPrimitive(opcode, arguments);
     if (c_->compiling && splitsLists(opcode, arguments)) {
         ok = compileSplitting(opcode, bytes, arguments);
@@ -102,7 +103,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (moves()) onArea(opcode, arguments);
     if (culling_ && bound_) {
         onCulling(opcode, arguments);
-        if (!skips && !c_->compiling && hasTrait(opcode, Trait::SkippableDraw) && cullDraw(opcode, arguments))
+        if (!skips && !c_->compiling && hasTrait(opcode, Trait::SkippableDraw) && cullDraw(opcode, arguments, blobs))
             return true;
     }
     if (skips) swapDrawEntryPoints();

@@ -134,6 +134,7 @@ private:
     void loadFunctions();
     NameTable& table(Kind kind);
     void runList(GLuint list);
+    void deleteNativeLists(const DisplayList& list);
     void runItem(const DisplayListItem& item);
     GLuint generate(Kind kind);
     bool splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const;

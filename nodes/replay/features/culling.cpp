@@ -21,11 +21,6 @@ namespace {
 
 using culling::WhyWhole;
 
-// Pixels between the edge of the area and the planes: rounding of positions to subpixels, and drivers that draw a row
-// of pixels beyond the scissor.
-constexpr double kMarginPixels = 2;
-// After this number of draws in a row from which nothing was left out, clusters are not tried for some draws.
-constexpr uint32_t kVainDraws = 8, kLeastPause = 64, kLongestPause = 4096;
 // Larger draws do not count in the report.
 constexpr uint64_t kMaxCounted = uint64_t{1} << 31;
 // A planted fault: planes inside of the area.
@@ -37,18 +32,23 @@ uint32_t cullWord(std::span<const std::byte> bytes, size_t index) {
     return word;
 }
 
-bool isPoint(GLenum mode) { return mode == GL_POINTS; }
-bool isLine(GLenum mode) { return mode >= GL_LINES && mode <= GL_LINE_STRIP; }
-
-double marginOf(GLenum mode, const replay::CullingState::RasterState& raster) {
-    if (isPoint(mode)) return raster.pointSize / 2 + kMarginPixels;
-    if (isLine(mode)) return raster.lineWidth / 2 + kMarginPixels;
-    if (raster.drawsEdges) return std::max(raster.pointSize, raster.lineWidth) / 2 + kMarginPixels;
-    return kMarginPixels;
+// Reads the indices of a draw from its record. A blob holds larger ones; null: none.
+bool readClientIndices(std::span<const std::byte> value, const std::vector<std::byte>* blob,
+                       replay::CullingDraw& draw) {
+    const uint32_t tag = cullWord(value, 0);
+    std::span<const std::byte> bytes;
+    if (tag == record::kTagBlob && blob)
+        bytes = *blob;
+    else if (tag <= record::kInlineBytes && value.size() >= size_t{4} + tag)
+        bytes = value.subspan(4, tag);
+    draw.indices = bytes;
+    draw.indexOffset = reinterpret_cast<uintptr_t>(bytes.data());
+    return !bytes.empty() && bytes.size() >= draw.count * replay::indexBytesOf(draw.indexType);
 }
 
-// Reads the record of a draw. Returns nothing for other commands, and for indices in client memory.
-std::optional<replay::CullingDraw> cullingDrawOf(uint16_t opcode, std::span<const std::byte> arguments) {
+// Reads the record of a draw. Returns nothing for other commands. blob: the oldest one of the record's stream, or null.
+std::optional<replay::CullingDraw> cullingDrawOf(uint16_t opcode, std::span<const std::byte> arguments,
+                                                 const std::vector<std::byte>* blob) {
     const DrawWords& words = effectOf(opcode).draw;
     if (words.count == 0) return std::nullopt;
     replay::CullingDraw draw;
@@ -57,11 +57,16 @@ std::optional<replay::CullingDraw> cullingDrawOf(uint16_t opcode, std::span<cons
     draw.count = count > 0 ? static_cast<uint64_t>(count) : 0;
     if (words.instances > 0) draw.instances = cullWord(arguments, words.instances);
     if (words.first > 0) draw.first = static_cast<int32_t>(cullWord(arguments, words.first));
-    if (words.base > 0) draw.first = static_cast<int32_t>(cullWord(arguments, words.base));
     if (words.indices == 0) return draw;
     draw.indexType = cullWord(arguments, words.type);
-    if (cullWord(arguments, words.indices) != record::kTagOffset || arguments.size() < 4 * (words.indices + size_t{3}))
-        return std::nullopt;
+    if (cullWord(arguments, words.indices) != record::kTagOffset) {
+        if (words.base > 0 || arguments.size() < 4 * size_t{words.indices} ||
+            !readClientIndices(arguments.subspan(4 * size_t{words.indices}), blob, draw))
+            return std::nullopt;
+        return draw;
+    }
+    if (arguments.size() < 4 * (words.indices + size_t{3})) return std::nullopt;
+    if (words.base > 0) draw.first = static_cast<int32_t>(cullWord(arguments, words.base));
     std::memcpy(&draw.indexOffset, arguments.data() + 4 * (words.indices + size_t{1}), 8);
     return draw;
 }
@@ -71,6 +76,8 @@ std::optional<replay::CullingDraw> cullingDrawOf(uint16_t opcode, std::span<cons
 replay::ContextCulling& Replay::cullingOf(ContextState& c) {
     if (c.culling) return *c.culling;
     c.culling = std::make_shared<replay::ContextCulling>();
+    c.culling->state.facts.isEs = c.api != wire::Api::Desktop;
+    c.culling->state.facts.hasMatrices = c.api == wire::Api::Desktop && !c.core;
     c.culling->state.facts.isCore = c.core;
     c.culling->state.facts.version = c.version;
     if (c.shared) ++c.shared->culling.contexts;
@@ -137,8 +144,11 @@ void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
     case CullUse::Program: state.changed(State::Program); break;
     case CullUse::Link: ++group.links; break;
     case CullUse::Uniforms: ++group.uniforms; break;
+    case CullUse::List: // its parts change the state (culling_lists.cpp)
+        state.hasPendingPrimitives = true;
+        onCulledMemory();
+        break;
     case CullUse::Pops:
-    case CullUse::List:
         state.changed(State::Matrices | State::Raster | State::Program);
         state.setMatrixMode(0, false);
         state.hasPendingPrimitives = true;
@@ -214,6 +224,12 @@ void Replay::onCullingRecord(uint16_t opcode, std::span<const std::byte> argumen
     }
 }
 
+// OpenGL ES 2 has neither a way to read buffers nor queries of samples.
+bool Replay::canReadBuffers() const {
+    if (c_->api == wire::Api::Desktop) return gl.glGetBufferSubData != nullptr;
+    return c_->api == wire::Api::Es2 && c_->version >= 30 && gl.glMapBufferRange && gl.glUnmapBuffer;
+}
+
 // Returns why the next draw is drawn whole, from the state of window and context.
 WhyWhole Replay::whyUnexamined(uint16_t opcode, const std::optional<replay::CullingDraw>& draw) {
     const bool isShader = c_->program != 0 || c_->pipelineBound;
@@ -222,7 +238,7 @@ WhyWhole Replay::whyUnexamined(uint16_t opcode, const std::optional<replay::Cull
     if (drawsLean() || movesPicture() || movesView() || takesRanges() || drawsOtherPixels())
         return WhyWhole::MovedPicture;
     if (c_->draw->isFlat || c_->draw->config.depth + c_->draw->config.stencil == 0) return WhyWhole::NoDepth;
-    if (c_->api != wire::Api::Desktop || !gl.glGetBufferSubData) return WhyWhole::Es;
+    if (!canReadBuffers()) return WhyWhole::Es;
     if (!c_->openQueries.empty() || c_->feedsBack) return WhyWhole::OpenQuery;
     if (c_->pipelineBound || (isShader && mayWriteMemory(c_->program))) return WhyWhole::Memory;
     if (stipplesLines()) return WhyWhole::Stipple;
@@ -240,21 +256,21 @@ bool Replay::canCut(const replay::CullingDraw& draw, const replay::CullingProgra
 }
 
 // The planes of the current view and area; null: the view is not linear.
-const culling::TilePlanes* Replay::planesFor(GLenum mode, replay::CullingProgram* program,
+const culling::TilePlanes* Replay::planesFor(double margin, replay::CullingProgram* program,
                                              std::span<const replay::CullingArray> arrays) {
     replay::ContextCulling& its = cullingOf(*c_);
     replay::CullingPlanes& known = its.planes;
     const replay::CullingGroup& group = c_->shared->culling;
     const auto& raster = its.state.raster(gl, group);
     const GLuint nodeName = program ? name(Kind::Program, c_->program) : 0;
-    if (!c_->core) (void)its.state.matrices(gl);
+    if (its.state.facts.hasMatrices) (void)its.state.matrices(gl);
     size_t components = 0; // one octal digit per array
     for (const replay::CullingArray& array : arrays)
         components = components * 8 + static_cast<size_t>(array.components);
     const bool isKnownView = known.view == its.state.matricesNumber() && known.program == nodeName &&
                              known.components == components &&
                              (!program || (known.uniforms == group.uniforms && known.links == group.links));
-    const double margin = culling_->plantsMargin ? kPlantedMargin : marginOf(mode, raster);
+    if (culling_->plantsMargin) margin = kPlantedMargin;
     const bool isKnownArea =
         known.raster == its.state.rasterNumber() && known.area == c_->draw->drawn && known.margin == margin;
     if (isKnownView && isKnownArea) return known.planes ? &*known.planes : nullptr;
@@ -276,6 +292,16 @@ const culling::TilePlanes* Replay::planesFor(GLenum mode, replay::CullingProgram
     return &*known.planes;
 }
 
+// Finds the program of the next draw. Returns why its positions are unknown; null and None: fixed function.
+WhyWhole Replay::whyNoView(replay::CullingProgram*& program) {
+    const auto& raster = cullingOf(*c_).state.raster(gl, c_->shared->culling);
+    program = nullptr;
+    if (raster.isUpsideDown || c_->viewportsDiffer) return WhyWhole::Viewports;
+    if (c_->program == 0 && raster.isArbProgram) return WhyWhole::ArbProgram;
+    if (c_->program != 0) program = &cullingProgram(name(Kind::Program, c_->program));
+    return (program ? !program->view : !cullingOf(*c_).state.facts.hasMatrices) ? WhyWhole::Shader : WhyWhole::None;
+}
+
 // Decides a draw. On Cut::Ranges, culling_->ranges has the kept parts.
 culling::Cut Replay::cutOf(const replay::CullingDraw& draw, WhyWhole& why) {
     replay::ContextCulling& its = cullingOf(*c_);
@@ -284,59 +310,65 @@ culling::Cut Replay::cutOf(const replay::CullingDraw& draw, WhyWhole& why) {
         why = reason;
         return culling::Cut::Whole;
     };
-    if (raster.isUpsideDown || c_->viewportsDiffer) return whole(WhyWhole::Viewports);
-    if (c_->program == 0 && raster.isArbProgram) return whole(WhyWhole::ArbProgram);
     replay::CullingProgram* program = nullptr;
-    if (c_->program != 0) program = &cullingProgram(name(Kind::Program, c_->program));
-    if (program ? !program->view : c_->core) return whole(WhyWhole::Shader);
+    if (const WhyWhole reason = whyNoView(program); reason != WhyWhole::None) return whole(reason);
     if (const WhyWhole reason = readArrays(program, culling_->arrays); reason != WhyWhole::None) return whole(reason);
-    if (draw.indexType && c_->shared->culling.isAmbiguous(its.state.indexBuffer(gl))) return whole(WhyWhole::Attribute);
-    culling::BoxCache::Entry& entry = lookAtBoxes(draw, culling_->arrays);
-    if (!entry.boxes) return whole(entry.isImpossible ? WhyWhole::NotFinite : WhyWhole::FirstUse);
-    const culling::TilePlanes* const planes = planesFor(draw.mode, program, culling_->arrays);
+    const GLuint indices = draw.indexType ? its.state.indexBuffer(gl) : 0;
+    if (draw.indexType && (indices != 0) != draw.indices.empty()) return whole(WhyWhole::ClientMemory);
+    if (indices && c_->shared->culling.isAmbiguous(indices)) return whole(WhyWhole::Attribute);
+    const bool mayCut = canCut(draw, program, raster);
+    const replay::FoundBoxes found = boxesOf(draw, culling_->arrays, why);
+    if (!found.boxes) return culling::Cut::Whole;
+    const culling::TilePlanes* const planes = planesFor(raster.marginOf(draw.mode), program, culling_->arrays);
     if (!planes) return whole(WhyWhole::Shader);
-    const bool isTried = entry.pause == 0 && canCut(draw, program, raster);
-    if (entry.pause > 0) --entry.pause;
+    const bool isTried = !found.payoff->isPaused() && mayCut;
+    found.payoff->skip();
     const culling::Cut cut =
-        culling::cutDraw(*entry.boxes, *planes, draw.count, culling::formOf(draw.mode), isTried, culling_->ranges);
-    entry.vain = cut == culling::Cut::Whole && isTried ? entry.vain + 1 : 0;
-    if (cut != culling::Cut::Whole) entry.lastPause = 0;
-    if (entry.vain < kVainDraws) return cut;
-    entry.vain = 0;
-    entry.lastPause = std::clamp(2 * entry.lastPause, kLeastPause, kLongestPause);
-    entry.pause = entry.lastPause;
+        culling::cutDraw(*found.boxes, *planes, draw.count, culling::formOf(draw.mode), isTried, culling_->ranges);
+    const bool saved = cut != culling::Cut::Whole;
+    if (isTried || saved || found.isStreamed) found.payoff->tried(saved);
     return cut;
 }
 
-// Returns true if nothing more of the draw must be drawn.
-bool Replay::cullDraw(uint16_t opcode, std::span<const std::byte> arguments) {
-    const DrawWords& words = effectOf(opcode).draw;
-    const auto draw = cullingDrawOf(opcode, arguments);
-    uint64_t vertices = draw ? draw->count * draw->instances : words.count > 0 ? cullWord(arguments, words.count) : 0;
-    if (vertices > kMaxCounted) vertices = 0; // GL refuses it
+void Replay::countCulling(culling::Cut cut, uint64_t vertices, uint64_t kept, WhyWhole why) {
     culling::CullingCounts& counts = counts_.culling;
-    WhyWhole why = whyUnexamined(opcode, draw);
-    if (why == WhyWhole::None && c_->draw->drawn.contains(c_->draw->whole)) return false;
-    const culling::Cut cut = why == WhyWhole::None ? cutOf(*draw, why) : culling::Cut::Whole;
-    uint64_t kept = 0;
-    for (const culling::VertexRange& range : culling_->ranges) kept += cut == culling::Cut::Ranges ? range.count : 0;
-    if (cut == culling::Cut::Whole) kept = vertices;
     ++(cut == culling::Cut::Whole    ? counts.drawsWhole
        : cut == culling::Cut::Ranges ? counts.drawsCut
                                      : counts.drawsLeftOut);
     counts.verticesDrawn += kept;
     counts.verticesLeftOut += vertices - std::min(kept, vertices);
     if (why != WhyWhole::None) counts.unexamined[static_cast<size_t>(why)] += vertices;
+}
+
+// Mesa collects neighbouring primitives of glBegin into one batch, whose pixels depend on the batch. Any draw separates
+// them, so one without vertices takes the place of a draw that is left out.
+void Replay::separatePrimitives() {
+    if (std::exchange(cullingOf(*c_).state.hasPendingPrimitives, false)) gl.glDrawArrays(GL_POINTS, 0, 0);
+}
+
+// Returns true if nothing more of the draw must be drawn.
+bool Replay::cullDraw(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs) {
+    const DrawWords& words = effectOf(opcode).draw;
+    const bool mayHaveBlob = &blobs == this && s_ && s_->blobs.size() > (s_->blobMissing == 0 ? 0U : 1U);
+    const auto draw = cullingDrawOf(opcode, arguments, mayHaveBlob ? &s_->blobs.front() : nullptr);
+    uint64_t vertices = draw ? draw->count * draw->instances : words.count > 0 ? cullWord(arguments, words.count) : 0;
+    if (vertices > kMaxCounted) vertices = 0; // GL refuses it
+    WhyWhole why = whyUnexamined(opcode, draw);
+    if (why == WhyWhole::None && c_->draw->drawn.contains(c_->draw->whole)) return false;
+    const culling::Cut cut = why == WhyWhole::None ? cutOf(*draw, why) : culling::Cut::Whole;
+    uint64_t kept = 0;
+    for (const culling::VertexRange& range : culling_->ranges) kept += cut == culling::Cut::Ranges ? range.count : 0;
+    if (cut == culling::Cut::Whole) kept = vertices;
+    countCulling(cut, vertices, kept, why);
     if (cut != culling::Cut::Nothing) cullingOf(*c_).state.hasPendingPrimitives = false;
     if (cut == culling::Cut::Whole) return false;
     if (culling_->mode == CullingMode::Audit) auditDraw(*draw, cut);
-    if (cut == culling::Cut::Ranges) {
+    if (cut == culling::Cut::Ranges)
         issue(*draw, culling_->ranges);
-        return true;
-    }
-    // Mesa collects neighbouring primitives of glBegin into one batch, whose pixels depend on the batch. Any draw
-    // separates them.
-    if (std::exchange(cullingOf(*c_).state.hasPendingPrimitives, false)) gl.glDrawArrays(draw->mode, 0, 0);
+    else
+        separatePrimitives();
+    bool found = false; // the blob of the record, which no command takes now
+    if (!draw->indices.empty() && cullWord(arguments, words.indices) == record::kTagBlob) (void)blobs.takeBlob(found);
     return true;
 }
 

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "nodes/culling/box_cache.hpp"
@@ -13,6 +15,7 @@
 #include "nodes/culling/slice_view.hpp"
 #include "nodes/culling/tile_planes.hpp"
 #include "nodes/replay/features/culling_state.hpp"
+#include "nodes/replay/features/list_sections.hpp"
 #include "nodes/session/culling_mode.hpp"
 
 namespace mural::replay {
@@ -21,9 +24,17 @@ namespace mural::replay {
 struct CullingDraw {
     GLenum mode = 0;
     uint64_t count = 0, instances = 1;
-    int64_t first = 0;    // first vertex, or the number added to each index
-    GLenum indexType = 0; // 0: no indices
-    uint64_t indexOffset = 0;
+    int64_t first = 0;                  // first vertex, or the number added to each index
+    GLenum indexType = 0;               // 0: no indices
+    uint64_t indexOffset = 0;           // in the index buffer; the address of indices in client memory
+    std::span<const std::byte> indices; // in client memory; empty: none, or in a buffer
+};
+
+// The boxes of a draw; null: it is drawn whole.
+struct FoundBoxes {
+    std::shared_ptr<const culling::DrawBoxes> boxes;
+    culling::Payoff* payoff = nullptr; // of its attempts
+    bool isStreamed = false;           // made for this draw alone
 };
 
 [[nodiscard]] inline uint32_t indexBytesOf(GLenum type) {
@@ -56,13 +67,21 @@ struct Culling {
         : mode(m),
           plantsMargin(plant == "cullmargin"),
           plantsMatrix(plant == "cullmatrix"),
-          plantsContents(plant == "cullcontents") {}
+          plantsContents(plant == "cullcontents"),
+          plantsLists(plant == "culllists") {}
 
     CullingMode mode;
     bool plantsMargin;   // planted fault: areas are too small
     bool plantsMatrix;   // planted fault: each draw uses the view of the draw before it
     bool plantsContents; // planted fault: changes of buffers are not seen
+    bool plantsLists;    // planted fault: matrices that lists change are not seen
     culling::BoxCache boxes;
+    // Draws whose vertices change with each draw, by the hash of their layout.
+    struct StreamedDraw {
+        uint32_t sightings = 0;
+        culling::Payoff payoff;
+    };
+    std::unordered_map<uint64_t, StreamedDraw> streamed;
     // of the current draw
     std::vector<culling::VertexRange> ranges;
     std::vector<CullingArray> arrays;
@@ -84,6 +103,8 @@ struct CullingPlanes {
 // State and planes for the draws of one context.
 struct ContextCulling {
     CullingState state;
+    ListSection section;         // the native list in compilation
+    unsigned sectionChanges = 0; // parts of the state that its commands change
     CullingPlanes planes;
 };
 

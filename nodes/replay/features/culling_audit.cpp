@@ -43,10 +43,12 @@ void Replay::issue(const replay::CullingDraw& draw, std::span<const culling::Ver
         offsets.push_back(
             reinterpret_cast<const void*>(draw.indexOffset + range.first * replay::indexBytesOf(draw.indexType)));
     }
+    if (draw.instances != 1 || esContext()) {
+        for (size_t i = 0; i < counts.size(); ++i) issueOne(draw, firsts[i], counts[i], offsets[i]);
+        return;
+    }
     const auto number = static_cast<GLsizei>(counts.size());
-    if (draw.instances != 1) { // never cut
-        gl.glDrawArraysInstanced(draw.mode, firsts[0], counts[0], static_cast<GLsizei>(draw.instances));
-    } else if (draw.indexType == 0) {
+    if (draw.indexType == 0) {
         gl.glMultiDrawArrays(draw.mode, firsts.data(), counts.data(), number);
     } else if (draw.first == 0) {
         gl.glMultiDrawElements(draw.mode, counts.data(), draw.indexType, offsets.data(), number);
@@ -56,29 +58,53 @@ void Replay::issue(const replay::CullingDraw& draw, std::span<const culling::Ver
     }
 }
 
+// A part of a draw by a command of its own: draws with instances, and of OpenGL ES, which has no glMultiDraw.
+void Replay::issueOne(const replay::CullingDraw& draw, GLint first, GLsizei count, const void* indices) const {
+    const auto instances = static_cast<GLsizei>(draw.instances);
+    const auto base = static_cast<GLint>(draw.first);
+    if (draw.indexType == 0 && instances == 1)
+        gl.glDrawArrays(draw.mode, first, count);
+    else if (draw.indexType == 0)
+        gl.glDrawArraysInstanced(draw.mode, first, count, instances);
+    else if (base == 0 && instances == 1)
+        gl.glDrawElements(draw.mode, count, draw.indexType, indices);
+    else if (base == 0)
+        gl.glDrawElementsInstanced(draw.mode, count, draw.indexType, indices, instances);
+    else
+        gl.glDrawElementsInstancedBaseVertex(draw.mode, count, draw.indexType, indices, instances, base);
+}
+
+bool Replay::hasMasksOfBuffers() const { return c_->version >= (esContext() ? 32 : 30); }
+
 // The masks of all buffers. Commands in display lists set them without the replay's knowledge.
 Replay::DriverColorMasks Replay::driverColorMasks() const {
     DriverColorMasks masks{};
     gl.glGetBooleanv(GL_COLOR_WRITEMASK, masks[0].data());
-    for (GLuint i = 0; c_->version >= 30 && i < masks.size(); ++i)
+    for (GLuint i = 0; hasMasksOfBuffers() && i < masks.size(); ++i)
         gl.glGetBooleani_v(GL_COLOR_WRITEMASK, i, masks[i].data());
     return masks;
 }
 
 void Replay::restoreDriverColorMasks(const DriverColorMasks& masks) {
-    if (c_->version < 30) return gl.glColorMask(masks[0][0], masks[0][1], masks[0][2], masks[0][3]);
+    if (!hasMasksOfBuffers()) return gl.glColorMask(masks[0][0], masks[0][1], masks[0][2], masks[0][3]);
     for (GLuint i = 0; i < masks.size(); ++i) gl.glColorMaski(i, masks[i][0], masks[i][1], masks[i][2], masks[i][3]);
 }
 
-// Counts the samples in this node's area of the omitted parts of a draw. Changes no pixel.
 void Replay::auditDraw(const replay::CullingDraw& draw, culling::Cut cut) {
-    std::vector<culling::VertexRange> rest = cut == culling::Cut::Nothing
-                                                 ? std::vector<culling::VertexRange>{{0, draw.count}}
-                                                 : restOf(draw, culling_->ranges);
+    auditSamples([&] {
+        if (cut == culling::Cut::Nothing)
+            issue(draw, std::vector<culling::VertexRange>{{0, draw.count}});
+        else
+            issue(draw, restOf(draw, culling_->ranges));
+    });
+}
+
+// Counts the samples in this node's area of `draw`, which draws what is left out. Changes no pixel.
+void Replay::auditSamples(const std::function<void()>& draw) {
     withQueriesSuspended([&] {
         bool isOn[std::size(kHidingCaps)] = {};
         for (size_t i = 0; i < std::size(kHidingCaps); ++i) {
-            if (c_->core && kHidingCaps[i] == GL_ALPHA_TEST) continue;
+            if (kHidingCaps[i] == GL_ALPHA_TEST && !cullingOf(*c_).state.facts.hasMatrices) continue;
             isOn[i] = gl.glIsEnabled(kHidingCaps[i]) != GL_FALSE;
             if (isOn[i]) gl.glDisable(kHidingCaps[i]);
         }
@@ -88,9 +114,10 @@ void Replay::auditDraw(const replay::CullingDraw& draw, culling::Cut cut) {
         gl.glDepthMask(GL_FALSE);
         gl.glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
         if (!culling_->auditQuery) gl.glGenQueries(1, &culling_->auditQuery);
-        gl.glBeginQuery(GL_SAMPLES_PASSED, culling_->auditQuery);
-        issue(draw, rest);
-        gl.glEndQuery(GL_SAMPLES_PASSED);
+        const GLenum target = esContext() ? GL_ANY_SAMPLES_PASSED : GL_SAMPLES_PASSED;
+        gl.glBeginQuery(target, culling_->auditQuery);
+        draw();
+        gl.glEndQuery(target);
         GLuint samples = 0;
         if (c_->queryBuffer) gl.glBindBuffer(GL_QUERY_BUFFER, 0);
         gl.glGetQueryObjectuiv(culling_->auditQuery, GL_QUERY_RESULT, &samples);

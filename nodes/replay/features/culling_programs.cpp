@@ -23,6 +23,11 @@ bool countsPrimitives(const std::string& text) {
     return text.find("gl_PrimitiveID") != std::string::npos || text.find("gl_DrawID") != std::string::npos;
 }
 
+// Whether GPUs may compute in less than 32 bits.
+bool hasLowPrecision(const std::string& text) {
+    return text.find("mediump") != std::string::npos || text.find("lowp") != std::string::npos;
+}
+
 } // namespace
 
 // The slice of a linked program, made once after each change of programs.
@@ -50,9 +55,11 @@ replay::CullingProgram& Replay::cullingProgram(GLuint nodeName) {
             text = &shader.text;
         }
         if (!text) program.reason = "it has no vertex shader";
+        if (text && !cullingOf(*c_).state.facts.isSoftware && hasLowPrecision(*text))
+            program.reason = "it computes in low precision";
     }
     if (program.reason.empty()) {
-        culling::ShaderSlice slice = culling::sliceOf(*text);
+        culling::ShaderSlice slice = culling::sliceOf(*text, esContext());
         program.reason = slice.reason;
         if (slice.isUsable()) {
             program.view.emplace(std::move(slice));
@@ -108,7 +115,7 @@ std::vector<float> Replay::uniformsOf(GLuint nodeName, const replay::CullingProg
         const GLfloat* from = read;
         if (uniform.location >= 0)
             gl.glGetUniformfv(nodeName, uniform.location, read);
-        else if (c_->core)
+        else if (!cullingOf(*c_).state.facts.hasMatrices)
             read[0] = NAN;
         else
             from = uniform.isModelview ? cullingOf(*c_).state.matrices(gl).modelview
@@ -133,8 +140,7 @@ WhyWhole Replay::readArrays(const replay::CullingProgram* program, std::vector<r
         const replay::CullingArray& array =
             isFixed ? state.position(gl) : state.attribute(gl, static_cast<GLuint>(location));
         if (!array.isEnabled || !array.isFloat || array.divisor != 0) return WhyWhole::Attribute;
-        if (array.buffer == 0) return WhyWhole::ClientMemory;
-        if (c_->shared->culling.isAmbiguous(array.buffer)) return WhyWhole::Attribute;
+        if (array.buffer && c_->shared->culling.isAmbiguous(array.buffer)) return WhyWhole::Attribute;
         if (array.components < 1 || array.components > 4) return WhyWhole::Attribute; // such as GL_BGRA
         components += static_cast<size_t>(array.components);
         arrays.push_back(array);

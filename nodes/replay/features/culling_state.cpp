@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "nodes/culling/vertex_boxes.hpp"
+#include "nodes/gl/software_renderer.hpp"
 
 namespace mural::replay {
 
@@ -46,6 +47,12 @@ GLint attributeValue(const GlFunctions& gl, GLuint index, GLenum name) {
     return value[0];
 }
 
+uint64_t pointerOf(const GlFunctions& gl, GLuint index) {
+    GLvoid* pointer = nullptr;
+    gl.glGetVertexAttribPointerv(index, GL_VERTEX_ATTRIB_ARRAY_POINTER, &pointer);
+    return reinterpret_cast<uintptr_t>(pointer);
+}
+
 // The stride of arrays that were set with stride 0.
 void setTightStride(CullingArray& array) {
     if (array.stride > 0) return;
@@ -55,12 +62,17 @@ void setTightStride(CullingArray& array) {
     array.stride = culling::elementBytes(read);
 }
 
+double aliasedPointSize(const GlFunctions& gl) {
+    GLfloat range[2] = {1, 1};
+    gl.glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, range);
+    return range[1];
+}
+
 // The size beyond which no point is drawn.
 double largestPoint(const GlFunctions& gl, bool isCore) {
-    GLfloat aliased[2] = {1, 1}, smooth[2] = {1, 1};
-    if (!isCore) gl.glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, aliased);
+    GLfloat smooth[2] = {1, 1};
     gl.glGetFloatv(GL_POINT_SIZE_RANGE, smooth);
-    return std::max(aliased[1], smooth[1]);
+    return isCore ? smooth[1] : std::max<double>(aliasedPointSize(gl), smooth[1]);
 }
 
 // The largest size of points, whatever a shader or the distance makes of it.
@@ -74,7 +86,18 @@ double pointSizeOf(const GlFunctions& gl, bool isCore, bool byShader) {
     return isPlain ? size : std::max<double>(size, largestPoint(gl, isCore));
 }
 
+// Pixels between the edge of the area and the planes: rounding of positions to subpixels, and drivers that draw a row
+// of pixels beyond the scissor.
+constexpr double kMarginPixels = 2;
+
 } // namespace
+
+double CullingState::RasterState::marginOf(GLenum mode) const {
+    if (mode == GL_POINTS) return pointSize / 2 + kMarginPixels;
+    if (mode >= GL_LINES && mode <= GL_LINE_STRIP) return lineWidth / 2 + kMarginPixels;
+    if (drawsEdges) return std::max(pointSize, lineWidth) / 2 + kMarginPixels;
+    return kMarginPixels;
+}
 
 uint64_t CullingGroup::contentsOf(GLuint buffer) {
     static uint64_t numbers = 0; // one thread replays all contexts
@@ -107,9 +130,14 @@ void CullingState::matrixChanged() {
 const CullingState::RasterState& CullingState::raster(const GlFunctions& gl, const CullingGroup& group) {
     if (!facts.areKnown) {
         facts.areKnown = true;
-        facts.hasBindings = facts.version >= 43 || hasExtension(gl, "GL_ARB_vertex_attrib_binding", facts.version);
+        const auto* const renderer = reinterpret_cast<const char*>(gl.glGetString(GL_RENDERER));
+        facts.isSoftware = renderer && gl::drawsWithoutGpu(renderer);
+        facts.hasBindings =
+            facts.version >= (facts.isEs ? 31 : 43) || hasExtension(gl, "GL_ARB_vertex_attrib_binding", facts.version);
         facts.hasClipControl =
-            gl.glClipControl && (facts.version >= 45 || hasExtension(gl, "GL_ARB_clip_control", facts.version));
+            facts.isEs
+                ? hasExtension(gl, "GL_EXT_clip_control", facts.version)
+                : gl.glClipControl && (facts.version >= 45 || hasExtension(gl, "GL_ARB_clip_control", facts.version));
     }
     if (!isDirty(Raster)) return raster_;
     dirty_ &= ~unsigned{Raster};
@@ -119,15 +147,15 @@ const CullingState::RasterState& CullingState::raster(const GlFunctions& gl, con
     gl.glGetFloatv(GL_VIEWPORT, box);
     gl.glGetFloatv(GL_LINE_WIDTH, &width);
     GLint modes[2] = {GL_FILL, GL_FILL};
-    gl.glGetIntegerv(GL_POLYGON_MODE, modes);
+    if (!facts.isEs) gl.glGetIntegerv(GL_POLYGON_MODE, modes);
     raster_.viewport = {box[0], box[1], box[2], box[3]};
     raster_.lineWidth = width;
-    raster_.pointSize = pointSizeOf(gl, facts.isCore, isOn(GL_PROGRAM_POINT_SIZE));
+    raster_.pointSize = facts.isEs ? aliasedPointSize(gl) : pointSizeOf(gl, facts.isCore, isOn(GL_PROGRAM_POINT_SIZE));
     raster_.drawsEdges = modes[0] != GL_FILL || (modes[1] != GL_FILL && !facts.isCore);
     raster_.isUpsideDown = facts.hasClipControl && integer(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT;
     raster_.isArbProgram = isOn(GL_VERTEX_PROGRAM_ARB);
     raster_.restartsAtLargest = isOn(GL_PRIMITIVE_RESTART_FIXED_INDEX);
-    raster_.restarts = isOn(GL_PRIMITIVE_RESTART);
+    raster_.restarts = !facts.isEs && isOn(GL_PRIMITIVE_RESTART);
     if (raster_.restarts) raster_.restartIndex = static_cast<GLuint>(integer(gl, GL_PRIMITIVE_RESTART_INDEX));
     return raster_;
 }
@@ -185,13 +213,12 @@ const CullingArray& CullingState::attribute(const GlFunctions& gl, GLuint index)
         array.offset = static_cast<uint64_t>(offset) + static_cast<uint64_t>(value(GL_VERTEX_ATTRIB_RELATIVE_OFFSET));
         array.stride = static_cast<uint64_t>(stride);
         array.divisor = static_cast<GLuint>(divisor);
+        if (array.buffer == 0) array.offset = pointerOf(gl, index); // Mesa returns 32 bits of the binding's offset
         return array;
     }
     array.stride = static_cast<uint64_t>(value(GL_VERTEX_ATTRIB_ARRAY_STRIDE));
     if (gl.glVertexAttribDivisor) array.divisor = static_cast<GLuint>(value(GL_VERTEX_ATTRIB_ARRAY_DIVISOR));
-    GLvoid* pointer = nullptr;
-    gl.glGetVertexAttribPointerv(index, GL_VERTEX_ATTRIB_ARRAY_POINTER, &pointer);
-    array.offset = reinterpret_cast<uintptr_t>(pointer);
+    array.offset = pointerOf(gl, index);
     setTightStride(array);
     return array;
 }

@@ -84,10 +84,12 @@ public:
     [[nodiscard]] bool isDirty(unsigned part) const { return (dirty_ & part) != 0; }
 
     struct Facts {
-        bool isCore = false;
+        bool isCore = false, isEs = false;
+        bool hasMatrices = false; // of fixed function
         int version = 0;          // major * 10 + minor
         bool hasBindings = false; // ARB_vertex_attrib_binding
         bool hasClipControl = false;
+        bool isSoftware = false; // vertices are processed on this machine's CPU
         bool areKnown = false;
     };
     Facts facts;
@@ -105,6 +107,9 @@ public:
         bool restarts = false;
         GLuint restartIndex = 0;
         bool restartsAtLargest = false;
+
+        // Pixels between the edges of an area and its planes, for primitives of `mode`.
+        [[nodiscard]] double marginOf(GLenum mode) const;
     };
 
     const FixedMatrices& matrices(const GlFunctions& gl);

@@ -21,7 +21,7 @@ GROUPS = {
                 "fragment_counters", "fragment_sums", "frag_coord", "fragment_places", "many_triangles", "no_depth", "queries", "queries_later",
                 "direct_state_access", "program_binaries", "shader_includes",
                 "draw_errors_compat", "draw_errors_core", "draw_errors_es3"],
-    "culling": ["cut_modes", "cut_streams", "cut_programs", "cut_scenes"],
+    "culling": ["cut_lists", "cut_modes", "cut_streams", "cut_programs", "cut_scenes"],
     # Programs whose extensions few drivers have: elsewhere they report it and are skipped.
     "bindless": ["bindless_textures", "sparse_textures", "sparse_buffers"],
     # Run by no test: the only driver here with bindless images sometimes crashes in it (docs/measurements/exactness.md).

@@ -151,6 +151,43 @@ void drawDeleted(bool isRight) {
     glDeleteBuffers(1, &buffer);
 }
 
+// Vertices of client memory, and of a buffer that gets other contents before each draw. The colours follow the
+// positions in one array, or lie in another one. Indices are short, or longer than a record.
+void drawStreamed(int frame) {
+    glEnableClientState(GL_COLOR_ARRAY);
+    const GLuint streamed = bufferOf(GL_ARRAY_BUFFER, kBytes, nullptr, GL_STREAM_DRAW);
+    for (int i = 0; i < 9; ++i) {
+        std::vector<Vertex> vertices = contents(i, (i + frame) % 3 == 0);
+        for (Vertex& v : vertices) v.y = 0.6F * v.y + (i % 2 ? 0.4F : -0.4F);
+        const bool isClient = i % 3 != 0;
+        glBindBuffer(GL_ARRAY_BUFFER, isClient ? 0 : streamed);
+        if (!isClient) glBufferData(GL_ARRAY_BUFFER, kBytes, vertices.data(), GL_STREAM_DRAW);
+        glVertexPointer(3, GL_FLOAT, sizeof(Vertex),
+                        isClient ? static_cast<const void*>(vertices.data()) : offsetOf(0));
+        glColorPointer(4, GL_UNSIGNED_BYTE, sizeof(Vertex),
+                       isClient ? static_cast<const void*>(vertices[0].colour) : offsetOf(12));
+        const auto each = static_cast<GLsizei>(vertices.size());
+        if (i % 3 == 1) {
+            glDrawArrays(GL_TRIANGLES, 6, each - 6);
+            glDrawArrays(GL_TRIANGLE_STRIP, 0, 72);
+        }
+        std::vector<GLuint> numbers;
+        for (GLuint n = 0; n < static_cast<GLuint>(each); ++n) numbers.push_back(n);
+        if (i % 3 == 2) {
+            glDrawElements(GL_TRIANGLES, each, GL_UNSIGNED_INT, numbers.data());
+            for (std::size_t part = 0; part < 4; ++part)
+                glDrawElements(GL_TRIANGLES, 90, GL_UNSIGNED_INT, numbers.data() + 180 * part);
+        }
+        if (i % 3 == 0) {
+            glDrawArrays(GL_TRIANGLES, 0, each);
+            glDrawElements(GL_TRIANGLES, each / 2 / 3 * 3, GL_UNSIGNED_INT, numbers.data());
+        }
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glDeleteBuffers(1, &streamed);
+    glDisableClientState(GL_COLOR_ARRAY);
+}
+
 void draw(Window&, int frame) {
     glClearColor(0, 0, 0.2F, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -164,6 +201,7 @@ void draw(Window&, int frame) {
         drawKnown();
     }
     drawDeleted(frame % 2 != 0);
+    drawStreamed(frame);
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 

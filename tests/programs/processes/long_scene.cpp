@@ -8,6 +8,7 @@
 //   SCENE_KEEPS=1   only the first frame clears, the others draw over the old contents.
 //   SCENE_SHARES=1  depth test and many small triangles everywhere, so that --db divides the draws.
 //                   Each of up to 4 nodes draws visible ones; an overlay is not divided.
+//   SCENE_LISTS=1   calls the display list at many places, of which most are in few tiles.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -189,6 +190,14 @@ void draw(Window& window, int frame) {
     glRotatef(float(frame) * 7, 0, 0, 1);
     glCallList(list);
     glPopMatrix();
+    static const bool callsLists = fromEnvironment("SCENE_LISTS", 0) != 0;
+    for (int i = 0; callsLists && i < 24; ++i) {
+        glPushMatrix();
+        glTranslatef(0.08F * float(i) - 0.9F, 0.3F * float((i + frame) % 7) - 0.9F, 0);
+        glScalef(0.1F, 0.1F, 1);
+        glCallList(list);
+        glPopMatrix();
+    }
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
     glEnableClientState(GL_VERTEX_ARRAY);
     glVertexPointer(2, GL_FLOAT, 0, nullptr);
