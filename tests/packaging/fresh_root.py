@@ -28,6 +28,7 @@ mkdir "$root/dev/shm" "$root/dev/pts"
 mount -t tmpfs -o mode=1777 tmpfs "$root/dev/shm"
 mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts"
 ln -s pts/ptmx "$root/dev/ptmx"
+ln -s /proc/self/fd "$root/dev/fd"
 for device in null zero full random urandom tty; do touch "$root/dev/$device"; mount --bind "/dev/$device" "$root/dev/$device"; done
 exec chroot "$root" "$@"
 """
@@ -90,7 +91,7 @@ def archive():
     path = os.environ.get('MURAL_FRESH_ROOT', os.path.join(TOP, 'build', 'package', 'bookworm.tar'))
     if not os.path.exists(path):
         os.makedirs(os.path.dirname(path), exist_ok=True)
-        subprocess.run(['mmdebstrap', '--variant=apt', 'bookworm', path + '.new'], check=True, timeout=3600)
+        subprocess.run(['mmdebstrap', '--variant=apt', '--format=tar', 'bookworm', path + '.new'], check=True, timeout=3600)
         os.rename(path + '.new', path)
     return path
 
