@@ -1,7 +1,9 @@
 #include "nodes/gl/egl_display.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <map>
 #include <utility>
 
 namespace mural::gl {
@@ -140,6 +142,22 @@ std::shared_ptr<EglDisplayState> openDeviceInTurn(const EglFunctions& egl, int t
     return open.empty() ? nullptr : open[static_cast<size_t>(turn) % open.size()];
 }
 
+// Returns the display of one of the GPUs that a job grants, in turn. Null: it names none of those that open.
+std::shared_ptr<EglDisplayState> openGrantedDevice(const EglFunctions& egl, const std::string& names, int turn,
+                                                   std::string& why) {
+    const std::vector<EglDevice> list = listEglDevices();
+    EGLDeviceEXT devices[kMaxEglDevices];
+    EGLint count = 0;
+    if (!egl.queryDevices || !egl.queryDevices(kMaxEglDevices, devices, &count)) count = 0;
+    std::map<size_t, std::shared_ptr<EglDisplayState>> open;
+    const std::vector<size_t> granted = selectGpus(names, list, [&](size_t number) {
+        if (number >= static_cast<size_t>(count)) return false;
+        EGLDisplay display = egl.getPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[number], nullptr);
+        return (open[number] = initialize(egl, display, "device " + std::to_string(number), why)) != nullptr;
+    });
+    return granted.empty() ? nullptr : open[granted[static_cast<size_t>(turn) % granted.size()]];
+}
+
 Result<std::shared_ptr<EglDisplayState>> openNamedDevice(const EglFunctions& egl, const std::string& name) {
     const std::vector<EglDevice> list = listEglDevices();
     size_t number = 0;
@@ -182,6 +200,9 @@ Result<std::shared_ptr<EglDisplayState>> openEglDisplay(const GpuChoice& choice)
     if (!egl) return egl.error();
     if (!choice.name.empty()) return openNamedDevice(*egl, choice.name);
     std::string why;
+    if (const std::string names = gpusOfJob([](const char* name) -> const char* { return std::getenv(name); });
+        !names.empty())
+        if (auto device = openGrantedDevice(*egl, names, choice.turn, why)) return device;
     if (choice.turns > 1)
         if (auto device = openDeviceInTurn(*egl, choice.turn, why)) return device;
     auto surfaceless = openSurfaceless(*egl, why);

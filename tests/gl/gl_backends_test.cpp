@@ -545,19 +545,6 @@ TEST(OpenPlatform, opensTheNamedGpu) {
     }
 }
 
-TEST(GpuChoice, matchesEveryNameOfADevice) {
-    const gl::EglDevice device{
-        "device 1", "Some GPU", "/dev/dri/renderD129", "0000:65:00.0", "0a1b2c3d0a1b2c3d0a1b2c3d0a1b2c3d", false};
-    for (const char* name : {"1", "GPU-0A1B2C3D-0a1b-2c3d-0a1b-2c3d0a1b2c3d", "0a1b2c3d0a1b2c3d0a1b2c3d0a1b2c3d",
-                             "/dev/dri/renderD129", "0000:65:00.0"})
-        EXPECT_TRUE(gl::matchesGpu(name, 1, device)) << name;
-    for (const char* name : {"", "0", "11", "GPU-0a1b2c3d", "/dev/dri/renderD12", "0000:66:00.0", "Some GPU"})
-        EXPECT_FALSE(gl::matchesGpu(name, 1, device)) << name;
-    EXPECT_FALSE(gl::matchesGpu("GPU-", 1, {"device 1", "", "", "", "", true})) << "a device without names";
-    EXPECT_EQ(gl::listOf({device, {"device 2", "", "", "", "", true}}),
-              "0 (Some GPU, 0000:65:00.0, /dev/dri/renderD129, 0a1b2c3d0a1b2c3d0a1b2c3d0a1b2c3d), 1 (software)");
-}
-
 TEST(OpenPlatform, reportsMissingGlxFeatures) {
     unsetenv("DISPLAY");
     auto none = gl::openPlatform("glx");
