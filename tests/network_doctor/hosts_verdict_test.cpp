@@ -1,7 +1,13 @@
 // Findings of mural doctor --nodes from measurements, and its table.
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "tests/temporary_folder.hpp"
+#include "tools/mural/hosts/fix_script.hpp"
 #include "tools/mural/hosts/hosts_table.hpp"
 #include "tools/mural/hosts/hosts_verdict.hpp"
 
@@ -167,6 +173,51 @@ TEST(HostFactsLines, keepAllFieldsAndRefuseOthers) {
         nlohmann::json{{"displays", {1, {{"monitors", "none"}, {"width", -5}}}}, {"devices", 3}, {"openFiles", "many"}};
     EXPECT_EQ(hostFactsFrom(odd).displays.size(), 1u);
     EXPECT_EQ(hostFactsFrom(odd).openFiles, 0u);
+}
+
+TEST(HostsVerdict, namesTheUserOfTheSeat) {
+    HostExamined x = goodHost("wall1");
+    x.machine.user = "wall";
+    x.machine.seat = {"seat0", "alice", "x11"};
+    EXPECT_EQ(findings(x), Names{}) << "another user may admit this one";
+    x.machine.displays.front().problem = "cannot be opened";
+    std::map<std::string, Check> checks;
+    const auto judged = judgeHosts(surveyOf({x}), {});
+    for (const Check& c : judged.front().checks) checks[c.name] = c;
+    EXPECT_EQ(checks["seat"].found, "seat0: alice, x11");
+    EXPECT_EQ(checks["display :0"].advice, "admit this user: `xhost +si:localuser:wall` in the session of alice");
+}
+
+TEST(SeatFacts, readsTheStateOfLogind) {
+    const test::TemporaryFolder folder;
+    EXPECT_EQ(textOf(readSeat(folder.path())), "none");
+    std::filesystem::create_directories(folder.path() + "/seats");
+    std::filesystem::create_directories(folder.path() + "/sessions");
+    std::ofstream(folder.path() + "/seats/seat0") << "# This is private data.\nIS_SEAT0=1\n";
+    EXPECT_EQ(textOf(readSeat(folder.path())), "seat0: nobody is logged in");
+    std::ofstream(folder.path() + "/seats/seat0") << "ACTIVE=c2\nACTIVE_UID=0\n";
+    std::ofstream(folder.path() + "/sessions/c2") << "UID=0\nTYPE=x11\n";
+    EXPECT_EQ(textOf(readSeat(folder.path())), "seat0: root, x11");
+}
+
+TEST(FixScript, runsCommandsAtTheirMachines) {
+    const HostChecks host{
+        "wall1",
+        {{Health::Warn, "clock", "+9 ms", "`timedatectl set-ntp true` there and here, or `chronyc makestep`"},
+         {Health::Ok, "GL", "EGL", "`rm -r it`"},
+         {Health::Bad, "start", "no key", "`ssh-copy-id wall1`"},
+         {Health::Bad, "size", "short", "`ip link set dev eth0 mtu 1500` here"},
+         {Health::Bad, "screen", "small", "`DISPLAY=:0 xrandr --output NAME --mode 8x8`, or correct the file"},
+         {Health::Bad, "disk", "full", "free space (`du -xh ~ | sort -h`)"}}};
+    const std::string text = fixScriptOf({host}, "ssh -q");
+    std::vector<std::string> commands;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (!line.empty() && line[0] != '#') commands.push_back(line);
+    EXPECT_EQ(commands,
+              (Names{"ssh-copy-id wall1", "ip link set dev eth0 mtu 1500", "ssh -q wall1 'timedatectl set-ntp true'"}))
+        << text;
+    EXPECT_NE(text.find("# wall1: clock: +9 ms\n#   `timedatectl"), std::string::npos) << text;
 }
 
 } // namespace

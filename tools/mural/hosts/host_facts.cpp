@@ -92,6 +92,7 @@ json toJson(const HostFacts& f) {
             {"eglProblem", f.eglProblem},
             {"devices", devices},
             {"displays", displays},
+            {"seat", {{"name", f.seat.name}, {"user", f.seat.user}, {"type", f.seat.type}}},
             {"closedDrmNodes", f.closedDrmNodes},
             {"hasDrm", f.hasDrm},
             {"openFiles", f.openFiles},
@@ -119,6 +120,8 @@ HostFacts hostFactsFrom(const json& j) {
         f.devices.push_back({stringIn(d, "name"), stringIn(d, "renderer"), stringIn(d, "drmNode"),
                              stringIn(d, "pciAddress"), stringIn(d, "uuid"), flagIn(d, "software")});
     for (const json& d : objectsIn(j, "displays")) f.displays.push_back(displayFrom(d));
+    if (const auto seat = j.find("seat"); seat != j.end() && seat->is_object())
+        f.seat = {stringIn(*seat, "name"), stringIn(*seat, "user"), stringIn(*seat, "type")};
     if (const auto nodes = j.find("closedDrmNodes"); nodes != j.end() && nodes->is_array())
         for (const json& name : *nodes)
             if (name.is_string()) f.closedDrmNodes.push_back(name.get<std::string>());

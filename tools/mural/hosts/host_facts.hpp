@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "nodes/output/windows/monitors.hpp"
+#include "tools/mural/hosts/seat_facts.hpp"
 
 namespace mural::cli {
 
@@ -40,6 +41,7 @@ struct HostFacts {
     std::string eglProblem; // empty: EGL draws
     std::vector<GlDeviceFacts> devices;
     std::vector<DisplayFacts> displays;
+    SeatFacts seat;
     std::vector<std::string> closedDrmNodes; // files in /dev/dri that this user cannot open
     bool hasDrm = false;                     // /dev/dri exists
     uint64_t openFiles = 0, lockedBytes = 0; // limits; UINT64_MAX: none

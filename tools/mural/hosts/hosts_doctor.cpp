@@ -10,6 +10,7 @@
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/doctor/check_report.hpp"
+#include "tools/mural/hosts/fix_script.hpp"
 #include "tools/mural/hosts/hosts_table.hpp"
 #include "tools/mural/network/network_arguments.hpp"
 #include "tools/mural/network/network_verdict.hpp"
@@ -79,6 +80,10 @@ CLI::Option* describeHostsDoctor(CLI::App& doctor, HostsArguments& a) {
         ->type_name("DIR")
         ->needs(nodes);
     doctor.add_flag("--all", a.all, "with --nodes: also checks without findings")->needs(nodes);
+    doctor
+        .add_flag("--fix", a.fix, "with --nodes: print the commands of all findings as a script, without running them")
+        ->needs(nodes)
+        ->excludes("--json");
     return nodes;
 }
 
@@ -99,6 +104,8 @@ int hostsDoctorCommand(const HostsArguments& arguments, const NetworkArguments& 
     const Health worst = worstOf(hosts);
     if (asJson) {
         fmt::print("{}\n", jsonText(jsonOfHosts(survey.value(), hosts, worst), 2));
+    } else if (arguments.fix) {
+        fmt::print("{}", fixScriptOf(hosts, network.launchCommand));
     } else {
         fmt::print("{}{}", tableOf(hosts, arguments.all), findingsOf(hosts));
         fmt::print("{}\n", worst == Health::Ok ? "All hosts are ready for Mural."

@@ -15,6 +15,7 @@ struct HostsArguments {
     std::string configFile; // --config; empty: none
     std::string recordings; // folder for recordings; empty: the home folder
     bool all = false;       // also rows without findings
+    bool fix = false;       // print a script instead of the table
 };
 
 struct NetworkArguments;

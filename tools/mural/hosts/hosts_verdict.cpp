@@ -110,11 +110,14 @@ void addGl(const HostFacts& f, std::vector<Check>& checks) {
         checks.push_back(good("/dev/dri", !f.hasDrm ? "no GPU" : "can be opened"));
 }
 
-void addDisplay(const DisplayFacts& d, std::vector<Check>& checks) {
+void addDisplay(const HostFacts& f, const DisplayFacts& d, std::vector<Check>& checks) {
     const std::string name = "display " + d.name;
     if (!d.problem.empty()) {
+        const bool isOthers = !f.seat.user.empty() && f.seat.user != f.user;
         checks.push_back({Health::Bad, name, d.problem,
-                          "start the X server, and admit this user: `xhost +si:localuser:$USER` in its session"});
+                          fmt::format("{}admit this user: `xhost +si:localuser:{}` in {}",
+                                      isOthers ? "" : "start the X server, and ", f.user,
+                                      isOthers ? "the session of " + f.seat.user : "its session")});
         return;
     }
     std::string monitors;
@@ -227,7 +230,8 @@ std::vector<Check> judgeOne(const HostsSurvey& survey, const HostExamined& x,
     checks.push_back(build(survey, x));
     checks.push_back(good("system", x.machine.system));
     addGl(x.machine, checks);
-    for (const DisplayFacts& d : x.machine.displays) addDisplay(d, checks);
+    checks.push_back(good("seat", textOf(x.machine.seat)));
+    for (const DisplayFacts& d : x.machine.displays) addDisplay(x.machine, d, checks);
     if (const auto screens = expected.find(x.host); screens != expected.end())
         for (const ExpectedScreen& e : screens->second) addExpected(x.machine, e, checks);
     addLimits(x.machine, checks);

@@ -153,6 +153,7 @@ HostFacts inspectThisHost(const InspectionPlan& plan) {
     f.system = systemText();
     f.muralPath = launch::ownBinary();
     f.user = userName();
+    f.seat = readSeat();
     inspectDrm(f);
     inspectLimits(f, plan.folder);
     std::vector<std::string> displays = plan.displays;
