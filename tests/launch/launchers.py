@@ -181,7 +181,7 @@ def head_killed(lab):
 def late_node(lab):
     path = lab.wrapper("[ $HOST = wall2 ] && sleep 6\nexec $MURAL \"$@\"")
     with lab.run("--nodes", "wall1,wall2", "--tiles", "2x1", "--remote-mural", path) as run:
-        return ended(run, 0, [" late, ", "node  host  launched", "1     wall2 "])
+        return ended(run, 0, [" late, ", "node  host  launched", "1     wall2 ", "node 1 (wall2) has caught up: connected "])
 
 
 # ---- Slurm

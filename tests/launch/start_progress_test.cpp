@@ -19,13 +19,31 @@ TEST(StartProgress, showsLateNodesOnceAfterFiveSeconds) {
     progress.add(1, "wall2.example");
     progress.reached(0, StartStep::Connected, at(0.5));
     progress.reached(1, StartStep::Launched, at(0.1));
-    EXPECT_TRUE(progress.lateTable(StartStep::Connected, at(4.9), whyOf).empty());
-    const auto lines = progress.lateTable(StartStep::Connected, at(5.1), whyOf);
+    EXPECT_TRUE(progress.news(StartStep::Connected, at(4.9), whyOf).empty());
+    const auto lines = progress.news(StartStep::Connected, at(5.1), whyOf);
     ASSERT_EQ(lines.size(), 3U);
     EXPECT_EQ(lines[0], "1 of 2 nodes is late, 5.1 s after the start:");
     EXPECT_EQ(lines[1], "node  host          launched    connected   waits for");
     EXPECT_EQ(lines[2], "1     wall2.example 0.1 s       -           its connection: no route");
-    EXPECT_TRUE(progress.lateTable(StartStep::Connected, at(9), whyOf).empty());
+    EXPECT_TRUE(progress.news(StartStep::Connected, at(9), whyOf).empty());
+}
+
+TEST(StartProgress, reportsNodesThatHaveCaughtUp) {
+    StartProgress progress(kBegin);
+    for (int node = 0; node < 3; ++node) progress.add(node, "wall" + std::to_string(node + 1));
+    progress.reached(0, StartStep::Connected, at(1));
+    EXPECT_EQ(progress.news(StartStep::Connected, at(6), whyOf).size(), 4U);
+    progress.reached(1, StartStep::Connected, at(7.2));
+    using Lines = std::vector<std::string>;
+    EXPECT_EQ(progress.news(StartStep::GlReady, at(7.5), whyOf),
+              Lines{"node 1 (wall2) has caught up: connected 7.2 s after the start"});
+    EXPECT_TRUE(progress.news(StartStep::GlReady, at(7.6), whyOf).empty());
+    progress.giveUp(2);
+    progress.reached(0, StartStep::GlReady, at(8));
+    EXPECT_EQ(progress.news(StartStep::GlReady, at(13), whyOf).size(), 3U);
+    progress.reached(1, StartStep::FirstFrame, at(14));
+    EXPECT_EQ(progress.news(StartStep::FirstFrame, at(14), whyOf),
+              Lines{"node 1 (wall2) has caught up: GL ready 14.0 s after the start"});
 }
 
 TEST(StartProgress, expectsGlAfterTheLastConnection) {

@@ -184,8 +184,7 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
         if (present >= enough && !late) late = Deadline::inMs(options.lateMs);
         if (late && late->passed()) break;
         if (cancelled()) return Error{"the session was stopped before it began"};
-        show(
-            progress.lateTable(StartStep::Connected, monotonicNowNs(), [&](int node) { return whyLate(nodes, node); }));
+        show(progress.news(StartStep::Connected, monotonicNowNs(), [&](int node) { return whyLate(nodes, node); }));
         poll(nullptr, 0, kLaunchPollMs);
     }
     for (LaunchedNode& node : nodes) {

@@ -62,12 +62,23 @@ bool StartProgress::isLate(StartStep wanted, int64_t nowNs) const {
            std::ranges::any_of(nodes_, [&](const Node& n) { return isMissing(n, wanted); });
 }
 
-std::vector<std::string> StartProgress::lateTable(StartStep wanted, int64_t nowNs,
-                                                  const std::function<std::string(int)>& why) {
-    if (!isLate(wanted, nowNs)) return {};
-    auto lines = table(wanted, nowNs, why);
+std::vector<std::string> StartProgress::news(StartStep wanted, int64_t nowNs,
+                                             const std::function<std::string(int)>& why) {
+    const auto step = static_cast<size_t>(wanted);
+    std::vector<std::string> lines;
+    if (isLate(wanted, nowNs)) lines = table(wanted, nowNs, why);
     const std::lock_guard lock(mutex_);
-    isShown_[static_cast<size_t>(wanted)] = true;
+    if (!lines.empty()) {
+        isShown_[step] = true;
+        for (Node& n : nodes_) n.isShownAsLate[step] = isMissing(n, wanted);
+    }
+    for (Node& n : nodes_)
+        for (size_t i = 0; i < kStartSteps; ++i) {
+            if (!n.isShownAsLate[i] || n.atNs[i] == 0) continue;
+            n.isShownAsLate[i] = false;
+            lines.push_back(fmt::format("node {} ({}) has caught up: {} {} after the start", n.node, n.host, kNames[i],
+                                        secondsText(n.atNs[i] - beganNs_)));
+        }
     return lines;
 }
 

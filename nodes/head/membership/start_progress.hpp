@@ -28,10 +28,11 @@ public:
     void giveUp(int node);
     [[nodiscard]] bool isLate(StartStep wanted, int64_t nowNs) const; // any node, after kLateMs
 
-    // Returns the lines of the table, once: a summary, a heading, and a line per node that has not reached the step.
-    // Empty: no node is late, or the table of this step has been shown. why: the reason of a node, may be empty.
-    std::vector<std::string> lateTable(StartStep wanted, int64_t nowNs, const std::function<std::string(int)>& why);
-    // The same at any time, for the report of a failure.
+    // Returns the lines to show now. Once per step, the table of the nodes that are late with it. After a table, a line
+    // for each of its nodes that has caught up. why: the reason of a late node, may be empty.
+    std::vector<std::string> news(StartStep wanted, int64_t nowNs, const std::function<std::string(int)>& why);
+    // Returns a summary, a heading, and a line per node that has not reached the step; at any time, for the report of a
+    // failure.
     [[nodiscard]] std::vector<std::string> table(StartStep wanted, int64_t nowNs,
                                                  const std::function<std::string(int)>& why) const;
 
@@ -40,7 +41,8 @@ private:
         int node = 0;
         std::string host;
         bool isWaitedFor = true;
-        std::array<int64_t, kStartSteps> atNs{}; // 0: not reached
+        std::array<int64_t, kStartSteps> atNs{};       // 0: not reached
+        std::array<bool, kStartSteps> isShownAsLate{}; // in a table, and has not caught up
     };
     [[nodiscard]] static bool isMissing(const Node& node, StartStep wanted);
     // Returns the time from which nodes are expected to take this step: for GL, when the last node connected; for the

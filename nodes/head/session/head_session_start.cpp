@@ -248,7 +248,7 @@ void HeadSession::watchStart(StartStep wanted) {
         const NodeConnection& link = nodes_.link(node);
         return link.alive() ? std::string() : std::string("it was lost");
     };
-    for (const std::string& line : options_.progress->lateTable(wanted, nowNs, why)) log::info(log::Topic::Node, line);
+    for (const std::string& line : options_.progress->news(wanted, nowNs, why)) log::info(log::Topic::Node, line);
 }
 
 // Ends the session if its batch job is over.
