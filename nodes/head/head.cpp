@@ -15,6 +15,7 @@
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/launch/launchers/create_launcher.hpp"
+#include "nodes/launch/launchers/job_clock.hpp"
 #include "nodes/output/windows/app_window.hpp"
 #include "nodes/output/windows/redraw_request.hpp"
 #include "nodes/output/outputs.hpp"
@@ -129,6 +130,15 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, He
     return {};
 }
 
+// Watches the time limit of the Slurm job of this process. Empty: it is in none.
+std::function<std::optional<JobDeadline::Notice>(int64_t nowNs)> jobWatch() {
+    const std::string job = launch::Environment::current().get("SLURM_JOB_ID").value_or("");
+    if (job.empty()) return {};
+    const auto clock = std::make_shared<launch::JobClock>(launch::endTimeCommand(job));
+    const auto deadline = std::make_shared<JobDeadline>(job);
+    return [clock, deadline](int64_t nowNs) { return deadline->check(clock->endNs(), nowNs); };
+}
+
 Result<int> runSession(ControlChannel& control) {
     auto config = receiveConfig(control);
     if (!config) return config.error();
@@ -151,6 +161,7 @@ Result<int> runSession(ControlChannel& control) {
     }
     auto launching = launchOptionsOf(*config);
     if (!launching) return launching.error();
+    options.watchJob = jobWatch();
     options.progress = std::make_shared<StartProgress>(monotonicNowNs());
     auto nodes =
         launchNodes(plan, *launching, *options.progress, [&] { return endRequested != 0 || control.broken(); });

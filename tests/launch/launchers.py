@@ -7,6 +7,7 @@ Exit status 77, with a reason: this machine lacks the servers or permits no name
 """
 
 import argparse
+import glob
 import os
 import shutil
 import signal
@@ -256,6 +257,32 @@ def job_cancelled(lab):
             return wrong
         lab.servers.run("scancel", "-n", "mural")
         return ended(run, 143)
+
+
+@case("slurm")
+def time_limit(lab):
+    """The run warns before the end of its job, follows a changed limit, and ends in order before Slurm ends the job."""
+    with lab.run("--slurm", "-N2 -t 1", frames=ENDLESS) as run:
+        if not run.wait_for_line("ends in "):
+            return "no warning: %s" % run.standard_error
+        wrong = drawing(run)
+        if wrong:
+            return wrong
+        job = lab.servers.run("squeue", "-h", "-o", "%i", "-n", "mural").stdout.strip()
+        changed = lab.servers.run("scontrol", "update", "JobId=" + job, "EndTime=now+14")
+        if changed.returncode != 0:
+            return "scontrol: " + changed.stderr
+        return ended(run, 1, ["; an operator can extend it: scontrol update JobId=%s " % job, "the run ends now"], ["DUE TO TIME LIMIT"])
+
+
+@case("slurm")
+def pmix_of_srun(lab):
+    """Rank 0 of the step is the head, the others are nodes. The PMIx servers of two slurmd of one machine collide."""
+    if not glob.glob("/usr/lib/*/pmix2/lib/libpmix.so"):
+        print("srun --mpi=pmix is not tested: libpmix-dev is not installed (tools/install-deps test)")
+        return None
+    with lab.run("--tiles", "2x1", "--verify", "--explain", before=("srun", "--mpi=pmix", "-n3", "-N1")) as run:
+        return ended(run, 0, [" 0 differ", "nodes start by pmix: this is rank 0 of 3 processes"], ["was lost"])
 
 
 @case("slurm")

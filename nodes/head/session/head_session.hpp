@@ -31,6 +31,7 @@
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
 #include "nodes/head/membership/node_capabilities.hpp"
+#include "nodes/head/membership/job_deadline.hpp"
 #include "nodes/head/membership/node_launcher.hpp"
 #include "nodes/head/membership/node_restarter.hpp"
 #include "nodes/head/membership/start_progress.hpp"
@@ -85,6 +86,8 @@ struct HeadOptions {
     std::function<Result<StartingNode>(const NodePlan&)> startNode;
     // Returns why no node can be started any more, such as the end of a batch job; empty: they can. May be empty.
     std::function<std::string()> whyLaunchesEnd;
+    // Returns a notice about the end of the batch job. Called once per second. May be empty.
+    std::function<std::optional<JobDeadline::Notice>(int64_t nowNs)> watchJob;
     std::shared_ptr<StartProgress> progress; // of the nodes; null: in tests
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;

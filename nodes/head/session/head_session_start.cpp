@@ -251,12 +251,16 @@ void HeadSession::watchStart(StartStep wanted) {
     for (const std::string& line : options_.progress->news(wanted, nowNs, why)) log::info(log::Topic::Node, line);
 }
 
-// Ends the session if its batch job is over.
+// Ends the session if its batch job is over, or about to be.
 void HeadSession::watchLaunches(int64_t nowNs) {
     constexpr int64_t kEveryNs = kNsPerS;
-    if (!options_.whyLaunchesEnd || nowNs - launchesWatchedNs_ < kEveryNs) return;
+    if (nowNs - launchesWatchedNs_ < kEveryNs) return;
     launchesWatchedNs_ = nowNs;
-    const std::string why = options_.whyLaunchesEnd();
+    if (const auto notice = options_.watchJob ? options_.watchJob(nowNs) : std::nullopt) {
+        log::warning(log::Topic::Session, notice->line);
+        if (notice->isOver) announce({{"event", "job-over"}});
+    }
+    const std::string why = options_.whyLaunchesEnd ? options_.whyLaunchesEnd() : std::string();
     if (why.empty()) return;
     options_.whyLaunchesEnd = {};
     log::error(log::Topic::Session, why, "; the session ends");
