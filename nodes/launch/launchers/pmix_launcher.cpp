@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <csignal>
 #include <poll.h>
+#include <iterator>
 #include <sstream>
+#include <unistd.h>
 #include <utility>
 
 #include "common/log/log.hpp"
 #include "nodes/launch/launchers/node_process.hpp"
+#include "nodes/launch/launchers/shell_words.hpp"
 #include "nodes/launch/launchers/starter/starter_protocol.hpp"
 
 namespace mural {
@@ -71,7 +74,12 @@ int runPmixRank(int rank, const NodeBinary& binary, int64_t timeoutMs) {
         return failed(met.error().message);
     const auto lines = (*client)->get(0, kKey);
     if (!lines) return failed("rank 0 has published no nodes: " + lines.error().message);
-    std::vector<std::unique_ptr<NodeProcess>> nodes;
+    struct RankNode {
+        std::string name, command;
+        std::unique_ptr<NodeProcess> process;
+        bool isOver = false;
+    };
+    std::vector<RankNode> nodes;
     std::istringstream text(lines.value());
     for (std::string line; std::getline(text, line);) {
         const auto request = launch::starterRequestOf(line);
@@ -81,11 +89,22 @@ int runPmixRank(int rank, const NodeBinary& binary, int64_t timeoutMs) {
         command.standardInput = request->secret + "\n";
         auto started = NodeProcess::start(command);
         if (!started) return failed(started.error().message);
-        nodes.push_back(std::move(*started));
+        nodes.push_back(
+            {"node " + std::to_string(request->id - 1), launch::joined(command.arguments, " "), std::move(*started)});
     }
-    // Nodes end with the head. A failed node is reported by the head, and does not end the other ranks.
-    while (endRequested == 0 && std::ranges::any_of(nodes, [](const auto& node) { return !node->ended(); }))
-        poll(nullptr, 0, kPollMs);
+    // Nodes end with the head. A failed node does not end the other ranks. The head sees its connection only, so that
+    // the exit status comes from here.
+    char host[256] = "localhost";
+    gethostname(host, sizeof(host) - 1);
+    const auto isOver = [&](RankNode& node) {
+        const auto how = node.isOver ? std::nullopt : node.process->ended();
+        if (!how) return node.isOver;
+        if (*how != "exit status 0" && endRequested == 0)
+            log::error(log::Topic::Launch, node.name, " (", pmixHostOf(rank), " on ", host, ") ended: ", *how, " of \"",
+                       node.command, "\"", node.process->details());
+        return node.isOver = true;
+    };
+    while (endRequested == 0 && std::ranges::count_if(nodes, isOver) < std::ssize(nodes)) poll(nullptr, 0, kPollMs);
     return 0;
 }
 
