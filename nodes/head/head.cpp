@@ -1,5 +1,6 @@
 #include "nodes/head/head.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <csignal>
 #include <fcntl.h>
@@ -58,7 +59,6 @@ Result<LaunchOptions> launchOptionsOf(const SessionConfig& config) {
     LaunchOptions options;
     options.isNative = !config.nodeProgram.empty();
     options.executable = options.isNative ? config.nodeProgram : launch::ownBinary();
-    options.mayFork = !options.isNative && config.glBackend != "osmesa";
     options.minNodes = config.minNodes;
     options.patienceMs = config.startTimeoutMs;
     LaunchSettings settings;
@@ -130,6 +130,18 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, He
     return {};
 }
 
+// Starts the process that forks the nodes of this machine. Null: a single node starts as fast alone, or the nodes do
+// not use the driver that it loads.
+std::shared_ptr<NodeForker> startForker(const SessionConfig& config, const SessionPlan& plan,
+                                        const LaunchOptions& options) {
+    const auto nodes = std::ranges::count(plan.nodes, NodeReach::SharedMemory, &NodePlan::reach);
+    if (nodes < 2 || options.isNative || config.glBackend == "osmesa") return nullptr;
+    auto forker = NodeForker::start(options.executable);
+    if (forker) return *forker;
+    log::debug(log::Topic::Launch, "nodes start as new processes: ", forker.error().message);
+    return nullptr;
+}
+
 // Watches the time limit of the Slurm job of this process. Empty: it is in none.
 std::function<std::optional<JobDeadline::Notice>(int64_t nowNs)> jobWatch() {
     const std::string job = launch::Environment::current().get("SLURM_JOB_ID").value_or("");
@@ -161,6 +173,7 @@ Result<int> runSession(ControlChannel& control) {
     }
     auto launching = launchOptionsOf(*config);
     if (!launching) return launching.error();
+    launching->forker = startForker(*config, plan, *launching);
     options.watchJob = jobWatch();
     options.progress = std::make_shared<StartProgress>(monotonicNowNs());
     auto nodes =

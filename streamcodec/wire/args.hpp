@@ -48,6 +48,15 @@ public:
     virtual std::span<const std::byte> takeBlob(bool& found) = 0;
 };
 
+// The queue of a record without blobs.
+class NoBlobs : public BlobQueue {
+public:
+    std::span<const std::byte> takeBlob(bool& found) override {
+        found = false;
+        return {};
+    }
+};
+
 class Args {
 public:
     Args(std::span<const std::byte> arguments, BlobQueue& blobs)

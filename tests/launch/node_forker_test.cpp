@@ -17,9 +17,8 @@ namespace {
 
 constexpr int64_t kPatienceMs = 20'000;
 
-// A node of these tests: serves one-byte requests on the socket that it inherits.
-//   p  replies its parent's pid    w  replies a child's pid, which waits
-//   k  ends by a signal            anything else, or the end: ends with status 7
+// A node of these tests serves one-byte requests on the socket that it inherits. It replies to `p` with its parent's
+// pid. It replies to `w` with the pid of a child that waits. `k` ends it by a signal, other bytes with status 7.
 int serve(int connectFd) {
     char request = 0;
     while (read(connectFd, &request, 1) == 1) {
@@ -136,6 +135,8 @@ TEST(NodeForker, endsWithItsLastNode) {
     peer.node.reset();
     EXPECT_TRUE(isGone(server));
 }
+
+TEST(NodeForker, refusesADescriptorThatIsNotOpen) { EXPECT_EQ(runForkServer(12345, serve), 1); }
 
 TEST(NodeForker, failsWithoutTheCommand) {
     const auto forker = NodeForker::start("/bin/true");

@@ -208,7 +208,7 @@ TEST(FixScript, runsCommandsAtTheirMachines) {
          {Health::Bad, "start", "no key", "`ssh-copy-id wall1`"},
          {Health::Bad, "size", "short", "`ip link set dev eth0 mtu 1500` here"},
          {Health::Bad, "screen", "small", "`DISPLAY=:0 xrandr --output NAME --mode 8x8`, or correct the file"},
-         {Health::Bad, "disk", "full", "free space (`du -xh ~ | sort -h`)"}}};
+         {Health::Bad, "disk", "full\nrm -r it", "free space (`du -xh ~ | sort -h`)"}}};
     const std::string text = fixScriptOf({host}, "ssh -q");
     std::vector<std::string> commands;
     std::istringstream lines(text);

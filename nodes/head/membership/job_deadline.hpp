@@ -20,7 +20,7 @@ public:
     explicit JobDeadline(std::string job) : job_(std::move(job)) {}
 
     // Returns a notice 5 minutes, 1 minute and kEndBeforeS before the end, once each: again if the end moves to later.
-    // endNs: the end of the job; nothing: no limit. Times are those of monotonicNowNs().
+    // endNs: the end of the job; nothing: no limit. Times are readings of monotonicNowNs().
     std::optional<Notice> check(std::optional<int64_t> endNs, int64_t nowNs);
 
 private:

@@ -200,8 +200,8 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
 
 } // namespace
 
-Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, LaunchOptions& options, StartProgress& progress,
-                                              const std::function<bool()>& cancelled) {
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, const LaunchOptions& options,
+                                              StartProgress& progress, const std::function<bool()>& cancelled) {
     const int64_t beganNs = monotonicNowNs();
     auto gate = openGate(plan);
     if (!gate) return gate.error();
@@ -209,12 +209,6 @@ Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, LaunchOpt
     for (const NodePlan& planned : plan.nodes) {
         nodes.emplace_back().plan = planned;
         progress.add(planned.node, planned.where);
-    }
-    const auto shared = std::ranges::count(plan.nodes, NodeReach::SharedMemory, &NodePlan::reach);
-    if (options.mayFork && !options.forker && shared > 1) {
-        auto forker = NodeForker::start(options.executable);
-        if (!forker) return Error{"the process that forks nodes did not start: " + forker.error().message};
-        options.forker = std::move(*forker);
     }
     // Remote nodes first, because their way is longer.
     if (const auto started = *gate ? startRemote(plan, nodes, options, **gate) : Result<void>(); !started)

@@ -46,8 +46,8 @@ struct LaunchOptions {
 
 // Call from a thread that outlives the nodes. Polls `cancelled`. Shows a table of late nodes, and again if it fails.
 // progress: gains the nodes. Errors: fewer nodes than required have connected.
-Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, LaunchOptions& options, StartProgress& progress,
-                                              const std::function<bool()>& cancelled);
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, const LaunchOptions& options,
+                                              StartProgress& progress, const std::function<bool()>& cancelled);
 
 // Starts one node without waiting for its connection.
 Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& options);

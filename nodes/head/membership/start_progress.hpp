@@ -14,7 +14,7 @@ namespace mural {
 enum class StartStep { Launched, Connected, Checked, GlReady, FirstFrame };
 constexpr size_t kStartSteps = 5;
 
-// Thread-safe. Times are those of monotonicNowNs().
+// Thread-safe. Times are readings of monotonicNowNs().
 class StartProgress {
 public:
     static constexpr int64_t kLateMs = 5'000; // after this time the table is shown

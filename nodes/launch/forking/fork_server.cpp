@@ -135,7 +135,11 @@ private:
 } // namespace
 
 int runForkServer(int controlFd, const std::function<int(int connectFd)>& runNode) {
-    fcntl(controlFd, F_SETFD, FD_CLOEXEC);
+    if (fcntl(controlFd, F_SETFD, FD_CLOEXEC) != 0) {
+        log::error(log::Topic::Launch, "descriptor ", controlFd, ": ", std::strerror(errno),
+                   "; mural run starts this command and passes its connection");
+        return 1;
+    }
     preloadDriver();
     const auto connectFd = ForkServer(controlFd).serve();
     return connectFd ? runNode(*connectFd) : 0;

@@ -7,8 +7,8 @@
 
 namespace mural {
 
-// Serves requests of fork_protocol.hpp until the head closes controlFd. Returns the exit status of the process, or that
-// of the node: in a forked node it returns the result of runNode(connectFd). Call it while this process has one thread.
+// Serves requests of fork_protocol.hpp until the head closes controlFd, and returns the exit status of the process. In
+// a forked node it returns the result of runNode(connectFd). Call it while this process has one thread.
 int runForkServer(int controlFd, const std::function<int(int connectFd)>& runNode);
 
 } // namespace mural

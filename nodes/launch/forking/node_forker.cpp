@@ -94,7 +94,7 @@ Result<std::unique_ptr<RunningNode>> NodeForker::fork(int connectFd) {
         if (reply->kind == ForkReply::Kind::Failed) return Error{std::string("fork: ") + std::strerror(reply->value)};
         return std::unique_ptr<RunningNode>(std::make_unique<ForkedNode>(shared_from_this(), *reply));
     }
-    // A late reply would be taken for that of the next request.
+    // The next request would take a late reply for its own.
     hasEnded_ = true;
     process_->kill();
     return Error{"the process that forks nodes does not reply"};

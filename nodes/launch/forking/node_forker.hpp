@@ -29,7 +29,7 @@ public:
 
 private:
     NodeForker(std::unique_ptr<NodeProcess> process, FileDescriptor control);
-    // Takes the replies that have arrived. Returns that of a request.
+    // Takes all messages that have arrived. Returns the reply to a request, if it is among them.
     std::optional<ForkReply> takeReplies();
 
     std::mutex mutex_; // guards the members below

@@ -13,7 +13,7 @@
 
 namespace mural::launch {
 
-// Returns the seconds since 1970 in a text. Nothing: another text, such as that of a job without a limit.
+// Reads seconds since 1970. Returns nothing for other texts: a job without a limit has the end "NONE".
 std::optional<int64_t> timeIn(std::string_view text);
 
 // Asks on a thread of its own, because squeue waits while the controller does not reply.

@@ -170,12 +170,7 @@ void Replay::onCulling(uint16_t opcode, std::span<const std::byte> arguments) {
 }
 
 void Replay::onDeletedBuffers(std::span<const std::byte> arguments) {
-    class NoBlobs : public BlobQueue {
-        std::span<const std::byte> takeBlob(bool& found) override {
-            found = false;
-            return {};
-        }
-    } blobs;
+    NoBlobs blobs;
     Args in(arguments, blobs);
     const auto count = in.get<GLsizei>();
     const Data names = in.data();

@@ -99,7 +99,7 @@ void Replay::auditDraw(const replay::CullingDraw& draw, culling::Cut cut) {
     });
 }
 
-// Counts the samples in this node's area of `draw`, which draws what is left out. Changes no pixel.
+// Counts the samples that `draw` covers in this node's area: it draws the left-out vertices. Changes no pixel.
 void Replay::auditSamples(const std::function<void()>& draw) {
     withQueriesSuspended([&] {
         bool isOn[std::size(kHidingCaps)] = {};

@@ -43,7 +43,7 @@ unsigned changesOf(uint16_t opcode, std::span<const std::byte> arguments, replay
 } // namespace
 
 // Called for each command of a list before its compilation. A list that is also executed during its compilation is
-// drawn whole, because its primitives are those of glBegin.
+// drawn whole, because its primitives also reach the frame at once.
 void Replay::onListed(uint16_t opcode, std::span<const std::byte> arguments) {
     if (opcode < wire::kFirstGlOpcode || effectOf(opcode).kind == EffectKind::EndList || !c_->shared) return;
     replay::ContextCulling& its = cullingOf(*c_);
@@ -54,12 +54,7 @@ void Replay::onListed(uint16_t opcode, std::span<const std::byte> arguments) {
 }
 
 void Replay::setAttributes(std::span<const replay::ListedAttribute> attributes) {
-    class NoBlobs : public BlobQueue {
-        std::span<const std::byte> takeBlob(bool& found) override {
-            found = false;
-            return {};
-        }
-    } blobs;
+    NoBlobs blobs;
     for (const replay::ListedAttribute& attribute : attributes) {
         Args in(attribute.arguments, blobs);
         (void)replayFunction(attribute.opcode)(*this, in);

@@ -17,17 +17,6 @@
 
 namespace mural {
 
-namespace {
-
-class NoBlobs : public BlobQueue {
-    std::span<const std::byte> takeBlob(bool& found) override {
-        found = false;
-        return {};
-    }
-};
-
-} // namespace
-
 bool Replay::hasFixedMatrices() const {
     return c_->api != wire::Api::Es2 && !c_->core && gl.glLoadMatrixf && gl.glMatrixMode;
 }

@@ -78,6 +78,7 @@ def main(description):
     if arguments.list:
         print("\n".join(chosen))
         return 0
+    # A case whose whole name is given runs in any case.
     by_name = [name for name in chosen if name in (arguments.cases or "").split(",")]
     left_out = [] if length.LONG else [name for name in chosen if name in LONG_CASES and name not in by_name]
     chosen = [name for name in chosen if name not in left_out]

@@ -1,5 +1,5 @@
-// Many frames that show the results of earlier ones, so a restarted node reveals missing data. Textures of the start, a
-// part of which changes in each frame, a buffer and a framebuffer object that are filled gradually, a display list, a
+// Many frames that show the results of earlier ones, so a restarted node reveals missing data. Each frame changes a
+// part of the textures, and adds to a buffer and to a framebuffer object. The scene also has a display list and a
 // query. Prints "frame N T" on standard output before each frame, where T is the time in ms since the previous one.
 //
 // Environment:

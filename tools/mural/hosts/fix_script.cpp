@@ -49,9 +49,16 @@ bool isForTheReader(const std::string& command) {
                                    "xrandr", "xhost ", "ulimit "});
 }
 
+// Texts of hosts must not begin a line of the script.
+std::string onOneLine(std::string text) {
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+    return text;
+}
+
 std::string linesOf(const std::string& host, const std::string& finding, const std::string& advice,
                     const std::string& launchCommand) {
-    std::string text = fmt::format("\n# {}: {}\n#   {}\n", host, finding, advice);
+    std::string text = fmt::format("\n# {}: {}\n#   {}\n", onOneLine(host), onOneLine(finding), onOneLine(advice));
     for (const AdvisedCommand& command : commandsIn(advice)) {
         if (isForTheReader(command.text) || hasBlank(command.text)) continue;
         text += command.isHere
