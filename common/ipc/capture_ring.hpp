@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 13;
+constexpr uint32_t kVersion = 14;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -79,13 +79,13 @@ enum class Uncompared : uint32_t {
 };
 constexpr uint32_t kUncomparedReasons = 7;
 
-// Number of round trips that a command has caused. Written under the program's request lock. A name is complete before
-// its count exceeds 0.
-struct TripCount {
+// Number of events of one kind, for one command. One lock of the program guards all counts of a kind. A name is
+// complete before its count exceeds 0.
+struct CommandCount {
     char command[56]; // zero-terminated
     std::atomic<uint64_t> count;
 };
-constexpr uint32_t kTripCounts = 48; // the last entry counts all commands without an entry
+constexpr uint32_t kCommandCounts = 48; // the last entry counts all commands without an entry
 
 // State of the head's reader of publications. A wake-up costs the program a system call. Frames faster than any display
 // are therefore not announced: the reader naps and polls by itself.
@@ -190,7 +190,8 @@ struct alignas(64) CaptureHeader {
     // CPU time of the threads that show frames, and the number of frames in that sum.
     std::atomic<uint64_t> frameCpuNs;
     std::atomic<uint64_t> frameCpuFrames;
-    TripCount trips[kTripCounts];
+    CommandCount trips[kCommandCounts]; // round trips; written under the program's request lock
+    CommandCount unsupported[kCommandCounts];
 
     // Names of the X displays on which the program has windows. Written by the app before the first window's record.
     std::atomic<uint32_t> displayCount;

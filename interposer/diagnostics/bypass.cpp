@@ -93,10 +93,4 @@ void reportBypass(const char* format, ...) {
     say("%s", line + sizeof kPrefix - 1);
 }
 
-void noteUnsupported(const char* command) {
-    char line[128];
-    const int length = snprintf(line, sizeof line, "unsupported\t%s\n", command);
-    if (length > 0 && static_cast<size_t>(length) < sizeof line) note(line, static_cast<size_t>(length));
-}
-
 } // namespace mural

@@ -1,13 +1,10 @@
-// Notes about GL calls that bypass the capture library, or that the stream lacks. They go to `mural run` (MURAL_NOTES),
-// which prints each line once for all processes. Without it they go to stderr.
+// Notes about GL calls that bypass the capture library. They go to `mural run` (MURAL_NOTES), which prints each line
+// once for all processes. Without it they go to stderr.
 #pragma once
 
 namespace mural {
 
 // Prints one line for the user.
 void reportBypass(const char* format, ...) __attribute__((format(printf, 1, 2)));
-
-// Adds a command that the stream lacks to the final report. Call once per command.
-void noteUnsupported(const char* command);
 
 } // namespace mural

@@ -1,10 +1,9 @@
 #include "interposer/encode/encode_support.hpp"
 
-#include <atomic>
-
 #include "interposer/context/context.hpp"
+#include "interposer/context/lock.hpp"
 #include "interposer/encode/group_order.hpp"
-#include "interposer/diagnostics/bypass.hpp"
+#include "interposer/diagnostics/command_counts.hpp"
 #include "interposer/diagnostics/log.hpp"
 #include "interposer/encode/control_record_writer.hpp"
 #include "interposer/memory/pixel_store.hpp"
@@ -15,17 +14,7 @@
 namespace mural {
 
 namespace {
-// Returns true at the first call of an unsupported command. Each name has one address.
-bool isFirstCall(const char* name) {
-    constexpr size_t kMaxNamed = 32; // further commands are only counted
-    static constinit std::atomic<const char*> named[kMaxNamed]{};
-    for (auto& slot : named) {
-        const char* seen = slot.load(std::memory_order_relaxed);
-        if (!seen && slot.compare_exchange_strong(seen, name, std::memory_order_relaxed)) return true;
-        if (seen == name) return false;
-    }
-    return false;
-}
+Lock unsupportedLock; // guards CaptureHeader::unsupported
 
 // Resets the thread's state for a program without capture, or after its end.
 void goAlone(ThreadState& t) {
@@ -153,11 +142,14 @@ GLsizei readableElements(const void* value, GLsizei count, uint32_t elementBytes
 }
 
 void unsupportedCalled(const char* name, const char* reason) {
-    if (Session* s = Session::current(); s && s->alive()) {
-        if (isFirstCall(name)) noteUnsupported(name);
-        if (s->header()->callsUnsupported.fetch_add(1, std::memory_order_relaxed) == 0)
-            say("%s is not supported on the wall (%s); further such calls are only counted", name, reason);
+    Session* s = Session::current();
+    if (!s || !s->alive()) return;
+    {
+        Guard guard(unsupportedLock);
+        countCommand(s->header()->unsupported, name);
     }
+    if (s->header()->callsUnsupported.fetch_add(1, std::memory_order_relaxed) == 0)
+        say("%s is not supported on the wall (%s); further such calls are only counted", name, reason);
 }
 
 } // namespace mural

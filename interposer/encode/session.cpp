@@ -16,6 +16,7 @@
 #include "interposer/process/head_socket.hpp"
 #include "interposer/process/launch_settings.hpp"
 #include "interposer/context/lock.hpp"
+#include "interposer/diagnostics/command_counts.hpp"
 #include "interposer/diagnostics/log.hpp"
 #include "interposer/readback/deferred_replies.hpp"
 #include "interposer/process/process.hpp"
@@ -60,14 +61,7 @@ private:
 // Requires the request lock.
 void countTrip(capture::CaptureHeader& header, const char* by) {
     constexpr char kPrefix[] = "mural_"; // prefix of wrapper names
-    const char* command = std::strncmp(by, kPrefix, sizeof kPrefix - 1) == 0 ? by + sizeof kPrefix - 1 : by;
-    uint32_t i = 0;
-    for (; i + 1 < capture::kTripCounts && header.trips[i].command[0]; ++i)
-        if (std::strncmp(header.trips[i].command, command, sizeof header.trips[i].command - 1) == 0) break;
-    capture::TripCount& trips = header.trips[i];
-    if (i + 1 == capture::kTripCounts) command = "others";
-    if (!trips.command[0]) std::strncpy(trips.command, command, sizeof trips.command - 1);
-    trips.count.fetch_add(1, std::memory_order_release);
+    countCommand(header.trips, std::strncmp(by, kPrefix, sizeof kPrefix - 1) == 0 ? by + sizeof kPrefix - 1 : by);
     header.roundTrips.fetch_add(1, std::memory_order_relaxed);
 }
 

@@ -18,7 +18,6 @@ namespace mural::launch {
 
 namespace {
 
-constexpr size_t kMaxUnsupported = 256; // programs may have written anything
 constexpr size_t kMaxEnded = 256; // ended programs that the capture did not see; build tools and shells write no note
 
 // Returns whether the library may draw. The other libraries of a program, about a hundred, are not opened.
@@ -140,8 +139,7 @@ std::string BypassWatch::notesPath() const {
     return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_);
 }
 
-// Notes are lines of fields between tabs: "say" and a text; "unsupported" and a command; "ended", the program and its
-// libraries.
+// Notes are lines of fields between tabs: "say" and a text; "ended", the program and its libraries.
 void BypassWatch::readNotes() {
     char part[16384];
     std::string text;
@@ -163,17 +161,10 @@ void BypassWatch::readNotes() {
             if (std::find(reported_.begin(), reported_.end(), fields[1]) != reported_.end()) continue;
             reported_.push_back(fields[1]);
             waiting_.push_back(fields[1]);
-        } else if (fields.size() == 2 && fields[0] == "unsupported") {
-            if (unsupported_.size() < kMaxUnsupported) unsupported_.insert(fields[1]);
         } else if (fields.size() > 2 && fields[0] == "ended" && ended_.size() < kMaxEnded) {
             ended_.push_back({fields[1], {fields.begin() + 2, fields.end()}});
         }
     }
-}
-
-const std::set<std::string>& BypassWatch::unsupportedCommands() {
-    readNotes();
-    return unsupported_;
 }
 
 std::vector<std::string> BypassWatch::newLines() {

@@ -38,8 +38,6 @@ public:
     [[nodiscard]] std::string notesPath() const;
     // Returns new lines from the notes of captured programs, each once.
     std::vector<std::string> newLines();
-    // Returns the names of unsupported commands that captured programs have called.
-    const std::set<std::string>& unsupportedCommands();
     // Examines running processes. Returns a line as describeBypass().
     [[nodiscard]] std::string describeRunning(const std::vector<pid_t>& processes) const;
     // Returns one line for each program that uses GL without the capture library, at its first detection. Empty: none.
@@ -55,7 +53,6 @@ private:
     size_t read_ = 0; // bytes of the notes
     std::vector<std::string> reported_, waiting_;
     std::vector<UncapturedProgram> ended_;
-    std::set<std::string> unsupported_;
     std::set<std::string> uncapturedReported_; // their names
 };
 

@@ -154,6 +154,16 @@ def network(lab):
     return expect(lab, [sys.executable, '-c', program], NOT_CAPTURABLE, ['IP sockets', 'waits for a server'])
 
 
+def unsupported(lab):
+    """A command that the stream lacks has its number of calls and a reason."""
+    report, wrong = lab.run(['{programs}/hard_limits', 'daemon_files'], seconds=8)
+    if wrong:
+        return wrong
+    calls, each = fact(report, 'commands', 'unsupportedCalls'), fact(report, 'commands', 'unsupported.glSeparableFilter2D') or {}
+    good = calls['value'] == 1 and each.get('value') == 1 and 'registry' in each.get('advice', '')
+    return None if good else '%s, %s' % (calls, each)
+
+
 def leaves_processes(lab):
     return expect(lab, ['sh', '-c', 'setsid sleep 601 >/dev/null 2>&1 & exec {programs}/long_run --frames 100000 --size 100x100'], EXACT)
 
@@ -194,7 +204,7 @@ def interrupted(lab):
     return None if process.returncode == 130 and 'interrupted' in errors and not left else 'status %d, %s, left %s' % (process.returncode, errors, left)
 
 
-CASES = {f.__name__: f for f in (exact, no_pictures, own_status, not_found, static, osmesa, x11, draws_nothing, crash, hang, hang_without_end, prints, network, leaves_processes, diff, interrupted)}
+CASES = {f.__name__: f for f in (exact, no_pictures, own_status, not_found, static, osmesa, x11, draws_nothing, crash, hang, hang_without_end, prints, network, unsupported, leaves_processes, diff, interrupted)}
 
 
 def main():

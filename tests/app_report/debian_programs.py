@@ -77,6 +77,8 @@ def wrong_statements(report, status):
     checks.append(('stream bytes', round(value(report, 'traffic', 'rawBytesPerFrame') * frames), round(tiles['report']['delta']['programBytes'])))
     checks.append(('memory', value(report, 'traffic', 'nodeMemoryBytes'), max(node['peakMemoryBytes'] for node in tiles['report']['nodes'])))
     checks.append(('unsupported calls', value(report, 'commands', 'unsupportedCalls'), number(tiles, 'callsUnsupported')))
+    for command, count in ((tiles.get('report') or {}).get('callsUnsupportedBy') or {}).items():
+        checks.append(('unsupported calls of ' + command, value(report, 'commands', 'unsupported.' + command), count))
     if number(native, 'frames') > 1:
         checks.append(('native rate', value(report, 'speed', 'nativeFramesPerSecond'), number(native, 'framesPerSecond')))
     if number(balance, 'frames') > 1:

@@ -4,7 +4,6 @@
 mural_ctl.py --build build/release [--cases operations,restart,stop] [--list]
 """
 
-import glob
 import json
 import os
 import socket
@@ -21,40 +20,13 @@ except ImportError:  # Debian's package serves Debian's Python only
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
 from harness import cases  # noqa: E402
-from harness.control import PATIENCE_SECONDS, ctl, result_of  # noqa: E402
+from harness.control import PATIENCE_SECONDS, Connection, ctl, result_of, socket_of  # noqa: E402
 
 SCHEMA = os.path.join(TOP, "docs", "reference", "control.schema.json")
 
 
 def drawing(context, *options):
     return context.run([context.program("long_run"), "--frames", "1000000", "--size", "250x190"], ["--tiles", "2x1", "--display", "none", *options])
-
-
-def socket_of(run):
-    """Returns the path of the control socket."""
-    folders = {os.environ.get("XDG_RUNTIME_DIR", "/tmp"), "/tmp"}
-    found = [path for folder in folders for path in glob.glob("%s/mural-%d-*/control" % (folder, run.process.pid))]
-    return found[0] if found else None
-
-
-class Connection:
-    def __init__(self, path):
-        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        self.socket.settimeout(PATIENCE_SECONDS)
-        self.socket.connect(path)
-        self.lines = self.socket.makefile("rb")
-
-    def line(self):
-        text = self.lines.readline()
-        return json.loads(text) if text else None
-
-    def request(self, text):
-        self.socket.sendall(text.encode() + b"\n")
-        return self.line()
-
-    def close(self):
-        self.lines.close()
-        self.socket.close()
 
 
 @cases.case

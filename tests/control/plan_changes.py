@@ -21,6 +21,7 @@ from harness import cases, length, pictures, session  # noqa: E402
 from harness.control import PATIENCE_SECONDS, ctl, result_of  # noqa: E402
 
 SIZE = "250x190"
+PAUSE_US = "1000" if length.LONG else "15000"  # per frame; a session without pauses takes the CPU time of other tests
 LAYOUTS = os.path.join(TOP, "configs", "layouts.eqc")
 CANVASES = os.path.join(TOP, "configs", "wall-and-monitor.eqc")
 
@@ -54,13 +55,13 @@ def nodes_of(context, run):
 class Drawing:
     """A session whose program draws until finish(), and whose frames are compared with the program's own GL."""
 
-    def __init__(self, context, options, frames=1000000, program="long_scene"):
+    def __init__(self, context, options, frames=1000000, program="long_scene", pause_us=PAUSE_US):
         self.context = context
         self.folder = tempfile.TemporaryDirectory(prefix="mural-plans.")
         self.report, self.end_file = self.path("report.json"), self.path("end")
         command = [context.program(program), "--frames", str(frames), "--size", SIZE]
         self.run = context.run(command, list(options) + ["--report", self.report],
-                               {"SCENE_MIB": "4", "SCENE_PAUSE_US": "1000", "END_FILE": self.end_file})
+                               {"SCENE_MIB": "4", "SCENE_PAUSE_US": pause_us, "END_FILE": self.end_file})
 
     def path(self, name):
         return os.path.join(self.folder.name, name)
@@ -185,9 +186,10 @@ def multicast_streams(context):
 @cases.case
 def saved_frames(context):
     """Every frame of a session with changes is saved, in order, and equals that of a session without any."""
+    pause_us = PAUSE_US if length.LONG else "60000"  # the comparison takes longer than the frames
     with tempfile.TemporaryDirectory(prefix="mural-plans.") as folder:
         changed, plain = os.path.join(folder, "changed"), os.path.join(folder, "plain")
-        with Drawing(context, ["--config", LAYOUTS, "--all-local", "--display", "none", "--out", changed]) as drawing:
+        with Drawing(context, ["--config", LAYOUTS, "--all-local", "--display", "none", "--out", changed], pause_us=pause_us) as drawing:
             if not drawing.begins():
                 return "no frames"
             for entry in (("2D", 3), ("turns", 2), ("DB", 2), ("simple", 1)):

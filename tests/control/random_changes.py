@@ -18,16 +18,17 @@ import time
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
-from harness import cases, session  # noqa: E402
+from harness import cases, length, session  # noqa: E402
 from harness.control import PATIENCE_SECONDS, ctl, result_of  # noqa: E402
 
-CHANGES = int(os.environ.get("RANDOM_CHANGES", "40"))
+CHANGES = int(os.environ.get("RANDOM_CHANGES", "40" if length.LONG else "24"))
 SEEDS = [int(seed) for seed in os.environ.get("RANDOM_SEEDS", "1").split(",")]
 SECONDS = float("inf") if "RANDOM_CHANGES" in os.environ else 100  # limit for the changes of one seed beyond the least number
 LEAST_CHANGES = 16
 GROWTH_MIB = 64  # allowed growth in the second half
 GROWTH_MIB_PER_SECOND = 3  # and of the rejoin log, whose thread shares its core with the nodes
 NODES = 3
+PAUSE_US = "1000" if length.LONG else "15000"  # per frame; a session without pauses takes the CPU time of other tests
 PLANS = [("--balance", "auto", "--local-nodes", "3"), ("--tiles", "2x1"), ("--balance", "load", "--local-nodes", "2"), ("--db", "2"),
          ("--dplex", "2"), ("--tile-queue", "64x64", "--local-nodes", "3"), ("--undo",)]
 
@@ -120,7 +121,7 @@ def perform(context, seed, kills):
         report, end_file = os.path.join(folder, "report.json"), os.path.join(folder, "end")
         command = [context.program("long_scene"), "--frames", "1000000", "--size", "200x150"]
         options = ["--balance", "auto", "--local-nodes", str(NODES), "--display", "none", "--restart-nodes", "1000", "--report", report]
-        with context.run(command, options + ([] if kills else ["--verify"]), {"SCENE_MIB": "4", "SCENE_PAUSE_US": "1000", "END_FILE": end_file}) as run:
+        with context.run(command, options + ([] if kills else ["--verify"]), {"SCENE_MIB": "4", "SCENE_PAUSE_US": PAUSE_US, "END_FILE": end_file}) as run:
             if not frames_go_on(context, run):
                 return "no frames: %s" % " | ".join(run.standard_error[-3:])
             head = run.wait_for_processes(cases.HEAD)[0]

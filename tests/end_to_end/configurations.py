@@ -21,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 
-from harness import display, pictures, programs
+from harness import display, length, pictures, programs
 
 PROGRAM = "fixed_lighting"
 FRAMES = 3
@@ -314,7 +314,7 @@ def main():
         if not shared:
             print("no example files; MURAL_SHARED says where shared is")
             return SKIPPED
-        files = shared
+        files = length.some(shared)
     failures = 0
     with display.PrivateDisplay() as name:
         run = Run(a, name)

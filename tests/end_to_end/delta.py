@@ -9,9 +9,10 @@ import os
 import sys
 import tempfile
 
-from harness import cases
+from harness import cases, length
 
 PATCH_BYTES = 64 * 64 * 4
+ENVIRONMENT = {"TEXTURE_SIDE": "4096" if length.LONG else "1024"}
 
 
 def report_of(context, program, frames, *options):
@@ -19,7 +20,7 @@ def report_of(context, program, frames, *options):
     with tempfile.TemporaryDirectory(prefix="mural-delta.") as folder:
         report_file = os.path.join(folder, "report.json")
         command = [context.program(program), "--frames", str(frames), "--size", "253x191"]
-        with context.run(command, ["--display", "none", "--quiet", "--report", report_file, *options]) as run:
+        with context.run(command, ["--display", "none", "--quiet", "--report", report_file, *options], ENVIRONMENT) as run:
             wrong = cases.check_end(run, 0)
             if wrong is not None:
                 return wrong

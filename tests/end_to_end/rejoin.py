@@ -474,7 +474,7 @@ def ranges_by_tcp(context):
     return ranges_come_back(context, ((1,), (0,)), 3, by_ranges("radix-k", 3) + ("--nodes", "localhost,localhost,localhost", "--stream", "tcp"), where="localhost")
 
 
-@case
+@cases.long_case
 def ranges_by_multicast(context):
     return ranges_come_back(context, ((2,), (0,)), 3, by_ranges("streaming", 3) + (
         "--nodes", "localhost,localhost,localhost", "--stream", "rsp://239.255.77.9:4299?interface=127.0.0.1"), where="localhost")

@@ -16,8 +16,6 @@ namespace {
 testing::EncoderHarness* harness = nullptr;
 } // namespace
 
-void noteUnsupported(const char*) {} // `mural run` is absent
-
 // ---- the session, whose other end is the harness
 
 Session* Session::current() {

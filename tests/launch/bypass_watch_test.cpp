@@ -69,15 +69,6 @@ TEST(BypassWatch, returnCompleteLinesOnce) {
     EXPECT_TRUE(w.newLines().empty());
 }
 
-TEST_F(Bypass, collectsUnsupportedCommands) {
-    auto watch = BypassWatch::create();
-    ASSERT_TRUE(watch.ok());
-    std::ofstream(watch.value()->notesPath(), std::ios::app)
-        << "unsupported\tglB\nunsupported\tglA\nunsupported\tglB\nunsupported\nunsupported\tx\ty\n";
-    EXPECT_EQ(watch.value()->unsupportedCommands(), (std::set<std::string>{"glA", "glB"}));
-    EXPECT_TRUE(watch.value()->newLines().empty());
-}
-
 TEST_F(Bypass, remembersLibrariesOfEndedPrograms) {
     auto watch = BypassWatch::create();
     ASSERT_TRUE(watch.ok());

@@ -89,6 +89,13 @@ TEST(Report, showsCommandsThatCauseRoundTrips) {
                                              "5 round trips (0.50 per frame: glReadPixels 4, glGetQueryObjectuiv 1)");
 }
 
+TEST(Report, namesUnsupportedCommands) {
+    const HeadEvent e = event(R"({"event":"report","frames":10,"callsUnsupported":5,)"
+                              R"("callsUnsupportedBy":{"glGetTexParameterxv":1,"glTexBumpParameterfvATI":4}})");
+    EXPECT_EQ(reportLines(e.report).back(), "5 calls of unsupported commands: glTexBumpParameterfvATI 4, "
+                                            "glGetTexParameterxv 1; see mural list-commands --unsupported");
+}
+
 TEST(Report, formatsSizesWithThreeDigits) {
     EXPECT_EQ(sizeText(0), "0 B");
     EXPECT_EQ(sizeText(999), "999 B");

@@ -29,8 +29,9 @@ def program(context):
     return os.path.join(context.build, "tests", "native", "native_scene")
 
 
-def draw(context, options, frames=FRAMES, fault="", environment=None, wanted=0, during=None, words=()):
-    """Returns (error or None, pictures, lines of standard error and output)."""
+def draw(context, options, frames=FRAMES, fault="", environment=None, wanted=0, during=None, words=(), last=0):
+    """Returns (error or None, pictures, lines of standard error and output). last: number of pictures to read, from the end;
+    0: all."""
     with tempfile.TemporaryDirectory(prefix="mural-native.") as folder:
         out = os.path.join(folder, "out")
         command = [program(context), "--frames", str(frames)] + (["--fault", fault] if fault else []) + list(words)
@@ -39,18 +40,18 @@ def draw(context, options, frames=FRAMES, fault="", environment=None, wanted=0, 
         with context.run(command, more, dict({"PATH": path}, **(environment or {}))) as run:
             wrong = during(run, out) if during else None
             wrong = wrong or cases.check_end(run, wanted)
-            shown = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))] if os.path.isdir(out) else []
+            shown = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))[-last:]] if os.path.isdir(out) else []
             return wrong, shown, list(run.standard_error) + list(run.standard_output)
 
 
 SINGLE = {}  # by number of frames
 
 
-def single(context, frames=FRAMES):
-    """Returns the pictures of one node."""
+def single(context, frames=FRAMES, last=0):
+    """Returns the pictures of one node; `last` as for draw()."""
     if frames not in SINGLE:
-        wrong, shown, lines = draw(context, "--tiles 1x1", frames)
-        if wrong or len(shown) != frames:
+        wrong, shown, lines = draw(context, "--tiles 1x1", frames, last=last)
+        if wrong or len(shown) != (last or frames):
             raise SystemExit("one node fails: %s, %d pictures; %s" % (wrong, len(shown), " | ".join(lines[-3:])))
         SINGLE[frames] = shown
     return SINGLE[frames]
@@ -174,13 +175,13 @@ def restarted_nodes_are_exact(context):
 
 def pictures_after_the_return(context, options, frames):
     """Kills a node, and compares the last 20 pictures."""
-    wanted = single(context, frames)
-    wrong, shown, lines = draw(context, options, frames, during=kill_one(2))
+    wanted = single(context, frames, last=20)
+    wrong, shown, lines = draw(context, options, frames, during=kill_one(2), last=20)
     if wrong:
         return wrong
     if not any("is back" in line or "rejoin" in line for line in lines):
         return "no line about the node: " + " | ".join(lines[-4:])
-    wrong = differing(wanted[-20:], shown[-20:])
+    wrong = differing(wanted, shown)
     return wrong and "after the return, " + wrong
 
 
@@ -284,8 +285,8 @@ def processes_of_a_machine_share_blobs(context):
                 return None
             time.sleep(0.02)
         return wrong or "the nodes map %s blobs" % [len(blobs) for blobs in mapped]
-    wrong, shown, lines = draw(context, "--tiles 2x1", 300, during=during, words=["--chunk-bytes", "300000"])
-    return wrong or differing(single(context, 300)[-20:], shown[-20:])
+    wrong, shown, lines = draw(context, "--tiles 2x1", 300, during=during, words=["--chunk-bytes", "300000"], last=20)
+    return wrong or differing(single(context, 300, last=20), shown)
 
 
 @cases.case

@@ -24,7 +24,7 @@ std::string sizeText(double sizeBytes) {
     return fmt::format("{:.2f} GB", sizeBytes / 1e9);
 }
 
-std::string roundTripText(const std::map<std::string, int64_t>& countsBy) {
+std::string countsText(const std::map<std::string, int64_t>& countsBy) {
     std::vector<std::pair<int64_t, std::string>> order;
     for (const auto& [command, count] : countsBy) order.emplace_back(-count, command);
     std::sort(order.begin(), order.end());
@@ -91,7 +91,7 @@ std::vector<std::string> cullingLines(const SessionReport& r) {
     std::string line = fmt::format(
         "culling: {:.0f} % of {} vertices left out",
         100.0 * static_cast<double>(sum.verticesLeftOut) / std::max(1.0, 1.0 * static_cast<double>(all)), all);
-    if (!sum.verticesUnexamined.empty()) line += "; not examined: " + roundTripText(sum.verticesUnexamined);
+    if (!sum.verticesUnexamined.empty()) line += "; not examined: " + countsText(sum.verticesUnexamined);
     std::vector<std::string> lines{line};
     if (sum.audits > 0)
         lines.push_back(fmt::format(
@@ -110,7 +110,7 @@ std::vector<std::string> reportLines(const SessionReport& r) {
     if (r.roundTrips > 0 && r.frames > 0)
         first +=
             fmt::format(" ({:.2f} per frame: {})", static_cast<double>(r.roundTrips) / static_cast<double>(r.frames),
-                        roundTripText(r.roundTripsBy));
+                        countsText(r.roundTripsBy));
     lines.push_back(first);
     if (r.delta.on && r.frames > 0) {
         const DeltaReport& e = r.delta;
@@ -177,8 +177,9 @@ std::vector<std::string> reportLines(const SessionReport& r) {
                                     r.recording, sizeText(static_cast<double>(r.recordedBytes))));
     }
     if (r.callsUnsupported > 0) {
-        lines.push_back(fmt::format("{} call{} of unsupported commands; see mural list-commands --unsupported",
-                                    r.callsUnsupported, plural(r.callsUnsupported)));
+        const std::string by = countsText(r.callsUnsupportedBy);
+        lines.push_back(fmt::format("{} call{} of unsupported commands{}; see mural list-commands --unsupported",
+                                    r.callsUnsupported, plural(r.callsUnsupported), by.empty() ? "" : ": " + by));
     }
     for (const NodeReport& n : r.nodes) {
         if (n.swaps.swaps > 0)

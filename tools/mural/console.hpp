@@ -33,7 +33,7 @@ private:
 std::vector<std::string> reportLines(const SessionReport& report);
 
 // Returns the counts by command, most frequent first: "glReadPixels 3, glGetQueryObjectuiv 2".
-std::string roundTripText(const std::map<std::string, int64_t>& countsBy);
+std::string countsText(const std::map<std::string, int64_t>& countsBy);
 
 // "812 B", "12.3 kB", "4.56 MB": powers of ten.
 std::string sizeText(double sizeBytes);

@@ -112,6 +112,7 @@ SessionReport reportFrom(const Json& j) {
     r.framesPerSecond = real(j, "framesPerSecond");
     r.bytesPerFrame = real(j, "bytesPerFrame");
     r.callsUnsupported = whole(j, "callsUnsupported");
+    r.callsUnsupportedBy = countsFrom(j, "callsUnsupportedBy");
     r.roundTrips = whole(j, "roundTrips");
     r.roundTripsBy = countsFrom(j, "roundTripsBy");
     r.verifiedFrames = whole(j, "verifiedFrames");

@@ -67,6 +67,7 @@ struct SessionReport {
     double framesPerSecond = 0;
     double bytesPerFrame = 0;
     int64_t callsUnsupported = 0;
+    std::map<std::string, int64_t> callsUnsupportedBy; // number of unsupported calls by command
     int64_t roundTrips = 0;
     std::map<std::string, int64_t> roundTripsBy; // number of round trips by command
     int64_t verifiedFrames = 0;

@@ -52,15 +52,24 @@ void writeLayout(CaptureHeader& h, uint32_t chunkCount, uint32_t replyBytes) {
 }
 
 // Returns only plain characters, because the program may have written anything there.
-std::string commandName(const capture::TripCount& trips) {
+std::string commandName(const capture::CommandCount& entry) {
     std::string name;
-    for (const char c : trips.command) {
+    for (const char c : entry.command) {
         const bool plain =
             (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
         if (!plain) break;
         name += c;
     }
     return name.empty() ? "unknown" : name;
+}
+
+std::map<std::string, uint64_t> countsBy(const capture::CommandCount (&counts)[capture::kCommandCounts]) {
+    std::map<std::string, uint64_t> by;
+    for (const capture::CommandCount& entry : counts) {
+        const uint64_t count = entry.count.load(std::memory_order_acquire);
+        if (count > 0) by[commandName(entry)] += count;
+    }
+    return by;
 }
 
 void store(std::atomic<uint32_t>& word, uint32_t value) {
@@ -277,10 +286,8 @@ CaptureCounts CaptureMemory::counts() const {
     for (uint32_t i = 0; i < capture::kWaits; ++i) c.waitNs[i] = shared_->waitNs[i].load();
     const uint32_t waiting = shared_->waitingFor.load();
     if (waiting < capture::kWaits) c.waitingFor = static_cast<capture::Wait>(waiting);
-    for (const capture::TripCount& trips : shared_->trips) {
-        const uint64_t count = trips.count.load(std::memory_order_acquire);
-        if (count > 0) c.tripsBy[commandName(trips)] += count;
-    }
+    c.tripsBy = countsBy(shared_->trips);
+    c.unsupportedBy = countsBy(shared_->unsupported);
     c.frameCpuNs = shared_->frameCpuNs.load();
     c.frameCpuFrames = shared_->frameCpuFrames.load();
     return c;

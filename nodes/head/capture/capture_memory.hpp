@@ -31,6 +31,7 @@ struct CaptureCounts {
     uint32_t largestDifference = 0;
     std::array<uint64_t, capture::kUncomparedReasons> uncomparedFrames{}; // by capture::Uncompared
     uint64_t callsUnsupported = 0;
+    std::map<std::string, uint64_t> unsupportedBy; // number of unsupported calls by command
     uint64_t roundTrips = 0;
     std::map<std::string, uint64_t> tripsBy;           // number of round trips by command
     std::array<uint64_t, capture::kWaits> waitNs{};    // by capture::Wait

@@ -325,6 +325,7 @@ void ProgramTable::addCounts(CaptureCounts& sum, const CaptureCounts& counts) {
     sum.largestDifference = std::max(sum.largestDifference, counts.largestDifference);
     for (size_t i = 0; i < counts.uncomparedFrames.size(); ++i) sum.uncomparedFrames[i] += counts.uncomparedFrames[i];
     sum.callsUnsupported += counts.callsUnsupported;
+    for (const auto& [command, calls] : counts.unsupportedBy) sum.unsupportedBy[command] += calls;
     sum.roundTrips += counts.roundTrips;
     for (size_t i = 0; i < counts.waitNs.size(); ++i) sum.waitNs[i] += counts.waitNs[i];
     for (const auto& [command, trips] : counts.tripsBy) sum.tripsBy[command] += trips;

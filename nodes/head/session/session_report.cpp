@@ -239,6 +239,7 @@ Json reportOf(const SessionNumbers& n) {
         {"limits", limitsJson(n.limits)},
         {"sharedDraws", sharedDrawsJson(n.sharedDraws)},
         {"callsUnsupported", n.programs.callsUnsupported},
+        {"callsUnsupportedBy", n.programs.unsupportedBy},
         {"savedPictures", n.output.savedPictures},
         {"lastPicture", n.lastPicture},
         {"recording", n.recording ? n.recording->file : ""},

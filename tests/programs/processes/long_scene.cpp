@@ -4,7 +4,7 @@
 //
 // Environment:
 //   SCENE_MIB       MiB of textures (8).
-//   SCENE_PAUSE_US  pause in each frame in us (5000).
+//   SCENE_PAUSE_US  pause in each frame in us (15000).
 //   SCENE_KEEPS=1   only the first frame clears, the others draw over the old contents.
 //   SCENE_SHARES=1  depth test and many small triangles everywhere, so that --db divides the draws.
 //                   Each of up to 4 nodes draws visible ones; an overlay is not divided.
@@ -213,7 +213,7 @@ void draw(Window& window, int frame) {
         quad(-0.5F, -0.5F, 0.1F, 0.1F);
         glDisable(GL_BLEND);
     }
-    static const int pauseUs = fromEnvironment("SCENE_PAUSE_US", 5000);
+    static const int pauseUs = fromEnvironment("SCENE_PAUSE_US", 15000);
     usleep(useconds_t(pauseUs));
 }
 

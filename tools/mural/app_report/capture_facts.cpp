@@ -31,13 +31,14 @@ void addUnsupported(const AppRun& run, Section& s) {
     const double calls = run.number("callsUnsupported");
     s.add("unsupportedCalls", "calls of unsupported commands", calls, fmt::format("{:.0f}", calls),
           calls > 0 ? "the program's own GL alone executes them; the pictures of the nodes may lack their effect" : "");
-    const auto names = run.report.find("unsupportedCommands");
-    if (names == run.report.end() || !names->is_array()) return;
-    for (const auto& each : *names) {
-        if (!each.is_string()) continue;
-        const auto name = each.get<std::string>();
+    const auto counts = run.report.find("callsUnsupportedBy");
+    if (counts == run.report.end() || !counts->is_object()) return;
+    for (const auto& [name, count] : counts->items()) {
+        if (!count.is_number()) continue;
         const CommandInfo* command = findCommand(name);
-        s.add("unsupported." + name, name, true, command && *command->reason ? command->reason : "no reason is known");
+        s.add("unsupported." + name, name, count.get<double>(),
+              fmt::format("{:.0f} call{}", count.get<double>(), count == 1 ? "" : "s"),
+              command && *command->reason ? command->reason : "no reason is known");
     }
 }
 

@@ -17,7 +17,7 @@ std::string reasonsText(const AppRun& run) {
     if (run.report.is_object() && by != run.report.end() && by->is_object())
         for (const auto& [reason, count] : by->items())
             if (count.is_number()) reasons[reason] = count.get<int64_t>();
-    return roundTripText(reasons);
+    return countsText(reasons);
 }
 
 nlohmann::json comparisonJson(const AppRun& run) {

@@ -159,7 +159,6 @@ private:
         if (!report.is_object()) return report_->json;
         report["bypass"] = bypassLines_;
         report["noFrame"] = whyNoFrame;
-        report["unsupportedCommands"] = bypass_.unsupportedCommands();
         return jsonText(report);
     }
 

@@ -120,7 +120,7 @@ std::string tripsText(const Json& program) {
     std::map<std::string, int64_t> counts;
     for (const auto& [command, count] : part(program, "roundTripsBy").items())
         if (count.is_number()) counts[command] = count.get<int64_t>();
-    const std::string by = roundTripText(counts);
+    const std::string by = countsText(counts);
     return by.empty() ? line : line + ": " + by;
 }
 
