@@ -159,7 +159,7 @@ def unsupported(lab):
     report, wrong = lab.run(['{programs}/hard_limits', 'daemon_files'], seconds=8)
     if wrong:
         return wrong
-    calls, each = fact(report, 'commands', 'unsupportedCalls'), fact(report, 'commands', 'unsupported.glSeparableFilter2D') or {}
+    calls, each = fact(report, 'commands', 'unsupportedCalls'), fact(report, 'commands', 'unsupported.glSeparableFilter2DEXT') or {}  # the registry's alias
     good = calls['value'] == 1 and each.get('value') == 1 and 'registry' in each.get('advice', '')
     return None if good else '%s, %s' % (calls, each)
 
