@@ -58,7 +58,7 @@ void findWords(EffectRule& rule, uint16_t opcode) {
 
 std::vector<EffectRule> allRules() {
     std::vector<EffectRule> rules(op::kLimit);
-    for (uint16_t opcode = 0; opcode < rules.size(); ++opcode) {
+    for (uint16_t opcode = 0; opcode < op::kLimit; ++opcode) {
         const CommandEffect& effect = kCommandEffects[opcode];
         EffectRule& rule = rules[opcode];
         rule.kind = effect.kind;

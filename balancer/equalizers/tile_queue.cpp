@@ -27,11 +27,9 @@ bool TileQueue::rebalance(double longest) {
         failures_ = 0;
         bestLongest_ = 0;
     }
-    if (bestLongest_ == 0 || longest <= (1 - rules_.brought) * bestLongest_) {
-        best_ = areas_;
-        bestLongest_ = longest;
-        failures_ = 0;
-    } else if (!moved_ && longest > (1 + rules_.changed) * bestLongest_) { // the load has changed
+    const bool isBetter = bestLongest_ == 0 || longest <= (1 - rules_.brought) * bestLongest_;
+    const bool hasLoadChanged = !moved_ && longest > (1 + rules_.changed) * bestLongest_;
+    if (isBetter || hasLoadChanged) {
         best_ = areas_;
         bestLongest_ = longest;
         failures_ = 0;

@@ -27,7 +27,9 @@ struct Tiles {
         for (int32_t y = 0; y < up; ++y)
             for (int32_t x = 0; x < across;) {
                 const int32_t first = x;
-                while (x < across && marked(static_cast<size_t>(y * across + x))) ++x;
+                while (x < across &&
+                       marked(static_cast<size_t>(y) * static_cast<size_t>(across) + static_cast<size_t>(x)))
+                    ++x;
                 if (x > first && !each(y, first, x)) return;
                 if (x == first) ++x;
             }

@@ -25,8 +25,8 @@ enum class Change : uint8_t {
 struct TileClass {
     PlaneFormat format = PlaneFormat::Rgba8;
     Activity activity = Activity::Full;
-    Change change = Change::Sharp; // Smooth if no pixel differs
-    friend auto operator<=>(const TileClass&, const TileClass&) = default;
+    Change change = Change::Sharp;                                         // Smooth if no pixel differs
+    friend auto operator<=>(const TileClass&, const TileClass&) = default; // NOLINT(modernize-use-nullptr): no pointer
 };
 
 [[nodiscard]] TileClass classify(const PlaneView& plane);

@@ -3,11 +3,14 @@
 // the others. Source: Yu, Wang, Ma, "Massively parallel volume rendering using 2-3 swap image compositing" (2008).
 #include "compositor/strategies/swap_groups.hpp"
 
+#include <numeric>
+#include <vector>
+
 namespace mural::compositor {
 
 void makeTwoThreeSwap(ScheduleMaker& maker) {
-    std::vector<int> all;
-    for (int rank = 0; rank < maker.ranks(); ++rank) all.push_back(rank);
+    std::vector<int> all(static_cast<size_t>(maker.ranks()));
+    std::iota(all.begin(), all.end(), 0);
     swapGroups(maker, all, [](int size) -> std::vector<int> {
         if (size % 2 == 0) return {size / 2, size / 2};
         if (size % 3 == 0) return {size / 3, size / 3, size / 3};

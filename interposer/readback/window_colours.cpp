@@ -49,6 +49,7 @@ struct Floats {
     }
     static uint32_t apart(Component a, Component b, size_t) {
         constexpr float kMax = 1 << 16; // largest half float
+        // NaN with equal bits is equal. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
         if (std::memcmp(&a, &b, sizeof a) == 0 || a == b) return 0;
         const float distance = a < b ? b - a : a - b;
         const float parts = (distance < kMax ? distance : kMax) * 255; // NaN gives kMax

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <xcb/xcb.h>
 
-struct _XDisplay;
+struct _XDisplay; // NOLINT(bugprone-reserved-identifier): the name is Xlib's
 
 namespace mural {
 

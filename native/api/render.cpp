@@ -88,11 +88,11 @@ void Renderer::draw(RenderTask& task) {
     task.apply();
     const native::GlCalls& gl = native::currentGl();
     const RenderContext& c = task.context();
-    const auto [red, green, blue] = colourOf(c.node);
+    const auto colour = colourOf(c.node);
     const auto fill = [&](const PixelViewport& box, float brightness) {
         const PixelViewport inside = intersect(box, c.area);
         gl.scissor(inside.x, inside.y, inside.w, inside.h);
-        gl.clearColor(red * brightness, green * brightness, blue * brightness, 1);
+        gl.clearColor(colour[0] * brightness, colour[1] * brightness, colour[2] * brightness, 1);
         gl.clear(GL_COLOR_BUFFER_BIT);
     };
     fill(c.area, 1);

@@ -35,6 +35,7 @@ Error startSession(int argc, char** argv) {
     if (length > 0) words[3].assign(path, static_cast<size_t>(length));
     for (int i = 1; i < argc; ++i) words.emplace_back(argv[i]);
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     execvp("mural", arguments.data());

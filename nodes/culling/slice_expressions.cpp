@@ -95,7 +95,7 @@ void SliceInterpreter::addSources(const TType& type, const std::string& name, bo
     }
     if (type.isStruct()) {
         for (const TTypeLoc& member : *type.getStruct())
-            addSources(*member.type, name + "." + member.type->getFieldName().c_str(), isUniform, out);
+            addSources(*member.type, name + "." + textOf(member.type->getFieldName()), isUniform, out);
         return;
     }
     if (name == "gl_ModelViewProjectionMatrix") {
@@ -126,7 +126,7 @@ SliceValue& SliceInterpreter::variable(TIntermSymbol* symbol) {
     const bool isSource = count > 0 && !isBlock && (storage == EvqUniform || storage == EvqVaryingIn);
     // Arrays of attributes are several attributes.
     if (isSource && (storage == EvqUniform || !(type.isArray() || type.isStruct())))
-        addSources(type, symbol->getName().c_str(), storage == EvqUniform, it->second);
+        addSources(type, textOf(symbol->getName()), storage == EvqUniform, it->second);
     it->second.resize(count, kUnknown);
     return it->second;
 }
@@ -227,7 +227,7 @@ SliceValue SliceInterpreter::eval(TIntermNode* node) {
 
 SliceValue SliceInterpreter::evalUnary(TIntermUnary* node) {
     const TOperator op = node->getOp();
-    const SliceValue value = eval(node->getOperand());
+    SliceValue value = eval(node->getOperand());
     const bool isWhole = isWholeType(node->getOperand()->getType());
     if (isConversion(op)) return value;
     const bool isUp = op == EOpPreIncrement || op == EOpPostIncrement;
@@ -308,7 +308,7 @@ SliceValue SliceInterpreter::operation(TOperator op, const Typed* left, const Ty
     const auto one = [&](SliceOp what, uint32_t x, uint32_t y) {
         return areScalars ? SliceValue{builder_.make(what, x, y, isWhole)} : unknown();
     };
-    const auto inverse = [&](SliceValue value) { return builder_.eachOne(SliceOp::Not, value, true); };
+    const auto inverse = [&](const SliceValue& value) { return builder_.eachOne(SliceOp::Not, value, true); };
     switch (op) {
     case EOpAdd: return builder_.each(SliceOp::Add, a, b, isWhole);
     case EOpSub: return builder_.each(SliceOp::Subtract, a, b, isWhole);
@@ -386,7 +386,7 @@ SliceValue SliceInterpreter::evalAggregate(Aggregate* node) {
         for (uint32_t i = 0; i < 4; ++i) vertex.push_back(builder_.input("gl_Vertex", i));
         return builder_.matrixTimesVector(matrix, vertex, 4);
     }
-    const SliceValue unknown(scalarsOf(node->getType()), kUnknown);
+    SliceValue unknown(scalarsOf(node->getType()), kUnknown);
     std::vector<SliceValue> values;
     for (TIntermNode* argument : arguments) {
         if (!argument->getAsTyped()) throw Unfollowed{"an unknown argument"};

@@ -36,7 +36,7 @@ bool asksDriver(std::string_view text) {
         const size_t line = newline == std::string_view::npos ? 0 : newline + 1;
         const std::string_view before = text.substr(line, at - line);
         const bool isExtension =
-            before.find("#") != std::string_view::npos && before.find("extension") != std::string_view::npos;
+            before.find('#') != std::string_view::npos && before.find("extension") != std::string_view::npos;
         if (!isAgreed && !isExtension) return true;
     }
     return false;

@@ -11,6 +11,9 @@
 
 namespace mural::culling {
 
+// glslang's strings have an allocator of their own.
+inline std::string textOf(const glslang::TString& text) { return {text.data(), text.size()}; }
+
 class SliceInterpreter {
 public:
     // root: of a parsed shader. It must outlive the interpreter.

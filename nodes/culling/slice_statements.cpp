@@ -50,7 +50,7 @@ SliceInterpreter::SliceInterpreter(TIntermNode* root) : root_(root) {
     if (!all) return;
     for (TIntermNode* node : all->getSequence())
         if (Aggregate* const a = node ? node->getAsAggregate() : nullptr; a && a->getOp() == EOpFunction)
-            functions_[std::string(a->getName().c_str())] = a;
+            functions_[textOf(a->getName())] = a;
 }
 
 ShaderSlice SliceInterpreter::slice() {
@@ -183,7 +183,7 @@ void SliceInterpreter::forget(TIntermNode* node) {
     if (Aggregate* const a = node->getAsAggregate()) {
         if (a->getOp() == EOpFunctionCall) {
             for (TIntermNode* argument : a->getSequence()) forgetTarget(argument); // perhaps an output
-            if (const auto callee = functions_.find(std::string(a->getName().c_str())); callee != functions_.end())
+            if (const auto callee = functions_.find(textOf(a->getName())); callee != functions_.end())
                 forget(callee->second);
         } else if (a->getOp() == EOpModf || a->getOp() == EOpFrexp) {
             for (TIntermNode* argument : a->getSequence()) forgetTarget(argument);
@@ -226,8 +226,8 @@ bool SliceInterpreter::assigns(TIntermNode* node) const {
 }
 
 SliceValue SliceInterpreter::call(Aggregate* node) {
-    const auto function = functions_.find(std::string(node->getName().c_str()));
-    const SliceValue unknown(scalarsOf(node->getType()), kUnknown);
+    const auto function = functions_.find(textOf(node->getName()));
+    SliceValue unknown(scalarsOf(node->getType()), kUnknown);
     if (function == functions_.end() || function->second->getSequence().size() < 2) {
         forget(node);
         return unknown;

@@ -45,7 +45,7 @@ struct Streams {
 class Relay {
 public:
     Relay(launch::ChildProcess process, Streams streams, ChannelSocket& channel)
-        : process_(std::move(process)), s_(std::move(streams)), channel_(channel) {}
+        : process_(process), s_(std::move(streams)), channel_(channel) {}
     ~Relay() {
         s_.input = FileDescriptor();
         if (!process_.waitUntil(Deadline::inMs(kEndMs))) process_.signalGroup(SIGKILL);

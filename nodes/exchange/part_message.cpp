@@ -10,7 +10,6 @@ namespace mural {
 
 namespace {
 
-using compositor::Plane;
 using compositor::PlaneFormat;
 using compositor::PlaneView;
 using compositor::RowRange;

@@ -135,15 +135,12 @@ Result<PictureExchange::Peer*> PictureExchange::peerOf(int rank, Deadline deadli
     std::unique_lock lock(mutex_);
     Peer& peer = peers_[rank];
     while (!peer.link.connection && !peer.gone) {
-        if (rank < own_.rank || own_.incarnation > 0)
-            peer.gone = true; // the peer should have connected before
-        else if (deadline.passed())
+        const bool hadToConnectBefore = rank < own_.rank || own_.incarnation > 0;
+        if (hadToConnectBefore || deadline.passed()) {
             peer.gone = true;
-        else {
-            arrived_.wait_for(lock, std::chrono::milliseconds(kAcceptSliceMs));
-            continue;
+            return Error{"no connection from " + rangeText(rank) + " came"};
         }
-        return Error{"no connection from " + rangeText(rank) + " came"};
+        arrived_.wait_for(lock, std::chrono::milliseconds(kAcceptSliceMs));
     }
     if (peer.gone) return Error{rangeText(rank) + " is disconnected"};
     return &peer;

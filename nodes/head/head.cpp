@@ -167,7 +167,7 @@ Result<int> runSession(ControlChannel& control) {
     if (!config->record.empty()) {
         trace::RecorderConfig recorder;
         recorder.lastFrame = config->frames;
-        auto made = trace::StreamRecorder::create(config->record, std::move(recorder));
+        auto made = trace::StreamRecorder::create(config->record, recorder);
         if (!made) return made.error();
         options.recorder = std::move(*made);
     }

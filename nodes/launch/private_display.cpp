@@ -109,7 +109,7 @@ Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int hei
     auto server = ChildProcess::start(
         serverRequest(binary.path, width, height, display->authority_->path(), writeEnd.get(), log.get()));
     if (!server) return server.error();
-    display->server_ = std::move(server.value());
+    display->server_ = server.value();
     writeEnd.reset();
     const std::string text = readDisplayNumber(readEnd.get(), display->server_);
     if (text.empty()) {

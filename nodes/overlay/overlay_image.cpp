@@ -26,8 +26,14 @@ constexpr uint32_t wordOf(OverlayColour colour, unsigned alpha) {
     return dividedPair(blueRed * alpha) | dividedPair(greenAlpha * alpha) << 8;
 }
 
+#ifdef __clang__
+#define MURAL_VECTORIZED // clang uses vector instructions at -O2, too
+#else
+#define MURAL_VECTORIZED __attribute__((optimize("O3")))
+#endif
+
 // It has no branches, so compilers use vector instructions.
-__attribute__((optimize("O3"))) void drawRow8(const uint32_t* from, std::byte* to, size_t pixels) {
+MURAL_VECTORIZED void drawRow8(const uint32_t* from, std::byte* to, size_t pixels) {
     for (size_t i = 0; i < pixels; ++i) {
         uint32_t below = 0;
         std::memcpy(&below, to + 4 * i, sizeof below);

@@ -82,7 +82,7 @@ struct Extent {
 struct HandleId {
     bool ofImage = false;
     uint64_t value = 0;
-    auto operator<=>(const HandleId&) const = default;
+    auto operator<=>(const HandleId&) const = default; // NOLINT(modernize-use-nullptr): no pointer
 };
 
 struct Object;

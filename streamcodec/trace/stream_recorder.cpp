@@ -17,15 +17,15 @@ std::chrono::nanoseconds leftOf(Deadline deadline) { return std::chrono::nanosec
 Result<std::unique_ptr<StreamRecorder>> StreamRecorder::create(const std::string& path, RecorderConfig config) {
     auto writer = TraceWriter::create(path);
     if (!writer) return writer.error();
-    return std::unique_ptr<StreamRecorder>(new StreamRecorder(path, std::move(*writer), std::move(config)));
+    return std::unique_ptr<StreamRecorder>(new StreamRecorder(path, std::move(*writer), config));
 }
 
 std::unique_ptr<StreamRecorder> StreamRecorder::createWaiting(const std::string& path, RecorderConfig config) {
-    return std::unique_ptr<StreamRecorder>(new StreamRecorder(path, nullptr, std::move(config)));
+    return std::unique_ptr<StreamRecorder>(new StreamRecorder(path, nullptr, config));
 }
 
 StreamRecorder::StreamRecorder(std::string path, std::unique_ptr<TraceWriter> writer, RecorderConfig config)
-    : path_(std::move(path)), writer_(std::move(writer)), config_(std::move(config)) {}
+    : path_(std::move(path)), writer_(std::move(writer)), config_(config) {}
 
 StreamRecorder::~StreamRecorder() {
     {

@@ -232,7 +232,9 @@ NativeWindows::Program& NativeWindows::programOf(uint32_t client) {
 void NativeWindows::show(WindowPicture picture) {
     const std::lock_guard lock(mutex_);
     removeEnded();
-    if (!dropped_) programOf(picture.client).add(std::move(picture));
+    if (dropped_) return;
+    Program& program = programOf(picture.client);
+    program.add(std::move(picture));
 }
 
 void NativeWindows::windowGone(uint32_t client, uint32_t window) {

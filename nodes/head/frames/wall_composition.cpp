@@ -39,7 +39,7 @@ void average(std::span<const Picture> samples, OwnedPicture& into) {
 // Pixel (i, j) of a kernel picture is pixel (i * columns + its column, j * rows + its row) of the whole.
 void interleave(const PassCounts& counts, std::vector<OwnedPicture>& parts, OwnedPicture& into) {
     const auto at = [&](int x, int y) -> OwnedPicture& {
-        return parts[static_cast<size_t>(y * counts.kernelWidth + x)];
+        return parts[static_cast<size_t>(y) * static_cast<size_t>(counts.kernelWidth) + static_cast<size_t>(x)];
     };
     int width = 0, height = 0;
     for (int x = 0; x < counts.kernelWidth; ++x) width += at(x, 0).width();

@@ -97,7 +97,7 @@ Result<void> NodeRestarter::bringBack(int node) {
     return {};
 }
 
-void NodeRestarter::addGroup(std::shared_ptr<NodeGroup> group) {
+void NodeRestarter::addGroup(const std::shared_ptr<NodeGroup>& group) {
     const int64_t nowNs = monotonicNowNs();
     const std::lock_guard lock(mutex_);
     for ([[maybe_unused]] const int node : group->nodes()) {

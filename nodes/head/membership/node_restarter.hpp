@@ -60,7 +60,7 @@ public:
     // member or being restarted; the session cannot take it back.
     Result<void> bringBack(int node);
     // Adds new nodes, which become members together. They are started once. Call from the thread of tick().
-    void addGroup(std::shared_ptr<NodeGroup> group);
+    void addGroup(const std::shared_ptr<NodeGroup>& group);
     // Makes all nodes of a group members, at the current position, and ends the restarts of the leaving ones. group:
     // null: none. Errors: a node of the group is lost already, or a leaving one is being restarted; nothing has
     // happened then.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace mural {
 namespace {
@@ -34,11 +35,10 @@ Result<void> ReplyAssembler::answer(int node, const ReplyPartHeader& header, Byt
         if (auto added = add(node, header, std::move(bytes), request); !added) return added;
         const bool deliver = !request.delivered && canDeliver(request);
         if (deliver) {
-            complete = std::move(request);
-            request.parts.clear();
-            request.last = complete.last;
-            request.awaited = complete.awaited;
-            request.delivered = true;
+            // Later replies to the request are recognised, and discarded.
+            complete = std::exchange(
+                request,
+                Request{request.kind, request.groupBytes, {}, request.awaited, request.last, request.firstNode, true});
         }
         if (allAnswered(request)) requests_.erase(key);
         if (!deliver) return {};

@@ -223,7 +223,8 @@ Json reportOf(const SessionNumbers& n) {
         {"calls", calls},
         {"roundTrips", n.programs.roundTrips},
         {"roundTripsBy", n.programs.tripsBy},
-        {"waitSeconds", secondsOf(std::accumulate(n.programs.waitNs.begin(), n.programs.waitNs.end(), int64_t{0}))},
+        {"waitSeconds", secondsOf(static_cast<int64_t>(
+                            std::accumulate(n.programs.waitNs.begin(), n.programs.waitNs.end(), uint64_t{0})))},
         {"waitSecondsBy", waitSecondsOf(n.programs)},
         {"frameCpuSeconds", secondsOf(static_cast<int64_t>(n.programs.frameCpuNs))},
         {"frameCpuFrames", n.programs.frameCpuFrames},

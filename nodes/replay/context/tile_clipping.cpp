@@ -219,7 +219,7 @@ std::array<GLubyte, 128> turnedStipple(const GLubyte* pattern, int x, int y) {
         const uint32_t bits = uint32_t{from[0]} << 24 | uint32_t{from[1]} << 16 | uint32_t{from[2]} << 8 | from[3];
         const uint32_t moved = shift ? bits << shift | bits >> (32 - shift) : bits;
         for (int k = 0; k < 4; ++k)
-            turned[static_cast<size_t>(4 * row + k)] = static_cast<GLubyte>(moved >> (24 - 8 * k));
+            turned[4 * static_cast<size_t>(row) + static_cast<size_t>(k)] = static_cast<GLubyte>(moved >> (24 - 8 * k));
     }
     return turned;
 }

@@ -52,8 +52,8 @@ constexpr std::array<Widths, SymbolModel::kSymbols> kWidths{{{0, 0},
                                                              {25, 3}}};
 constexpr auto kSymbolOfWidth = [] {
     std::array<uint8_t, 33> symbols{};
-    for (uint8_t s = 0; s < kWidths.size(); ++s)
-        for (uint32_t w = kWidths[s].minimum; w < symbols.size(); ++w) symbols[w] = s;
+    for (size_t s = 0; s < kWidths.size(); ++s)
+        for (uint32_t w = kWidths[s].minimum; w < symbols.size(); ++w) symbols[w] = static_cast<uint8_t>(s);
     return symbols;
 }();
 

@@ -177,7 +177,7 @@ std::string manPage(const CommandFacts& command, const std::vector<CommandFacts>
     const std::string meaning = isMural ? command.meaning.substr(command.meaning.find(": ") + 2) : command.meaning;
     std::string name = meaning;
     while (!name.empty() && name.back() == '.') name.pop_back();
-    const size_t words = command.usage.find(" ", isMural ? 0 : 6);
+    const size_t words = command.usage.find(' ', isMural ? 0 : 6);
     const std::string rest = words == std::string::npos ? "" : command.usage.substr(words);
     std::string page = heading(manPageName(command), version, date);
     page += section("NAME", escaped(manPageName(command)) + " \\- " + escaped(name) + "\n");

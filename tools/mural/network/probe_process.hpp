@@ -30,7 +30,7 @@ public:
 
 private:
     ProbeProcess(launch::ChildProcess process, LineChannel lines, FileDescriptor errors)
-        : process_(std::move(process)), lines_(std::move(lines)), errors_(std::move(errors)) {}
+        : process_(process), lines_(std::move(lines)), errors_(std::move(errors)) {}
     // Returns the end of the process as the reason if it has ended, otherwise `why`.
     Error explained(const Error& why);
     // Returns how it ended, with the last line that it or its launch command printed to standard error.

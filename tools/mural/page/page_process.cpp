@@ -23,6 +23,7 @@
 #include "nodes/launch/session_socket.hpp"
 #include "tools/mural/page/admin_listener.hpp"
 #include "tools/mural/page/http/page_listener.hpp"
+#include "tools/mural/page/http/page_site.hpp"
 
 namespace mural::page {
 

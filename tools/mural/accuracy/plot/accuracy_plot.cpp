@@ -16,7 +16,6 @@ namespace {
 
 using drawing::Align;
 using drawing::Box;
-using drawing::Font;
 using drawing::Point;
 using drawing::Style;
 using drawing::Svg;

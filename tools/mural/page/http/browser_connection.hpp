@@ -229,7 +229,7 @@ private:
                      [self = this->shared_from_this()](HttpResponse response) { self->write(std::move(response)); });
     }
 
-    void upgrade(HttpRequest request, beast::http::request<beast::http::string_body> message) {
+    void upgrade(const HttpRequest& request, beast::http::request<beast::http::string_body> message) {
         isKept_ = false;
         if (request.path != "/ws") return refuse(404, "the WebSocket of the page is /ws");
         if (auto refused = site_.refusal(request)) return write(std::move(*refused));

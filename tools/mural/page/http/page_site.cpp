@@ -59,7 +59,7 @@ void PageSite::handle(HttpRequest request, OnResponse onResponse) {
 }
 
 void PageSite::handleApi(const std::string& path, const std::string& query, HttpRequest request,
-                         OnResponse onResponse) {
+                         const OnResponse& onResponse) {
     if (!requests_.take(monotonicNowNs()))
         return onResponse(textResponse(429, "more than 100 requests per second; try again"));
     const std::string_view bearer = "Bearer ";

@@ -44,7 +44,8 @@ private:
         std::string query; // after "?"
     };
 
-    void handleApi(const std::string& path, const std::string& query, HttpRequest request, OnResponse onResponse);
+    void handleApi(const std::string& path, const std::string& query, HttpRequest request,
+                   const OnResponse& onResponse);
     void answer(const Call& call, const OnResponse& onResponse);
     void answerDocument(const Call& call, const OnResponse& onResponse);
     void answerPicture(const Call& call, const OnResponse& onResponse);

@@ -125,7 +125,8 @@ void TopicFan::flush(int64_t nowNs, const std::function<void(int viewer, Json me
             Subscription& subscription = subscriptions[i];
             const bool has = subscription.latest != nullptr || !subscription.entries.is_null();
             if (subscription.intervalNs == 0 || !has || nowNs < subscription.nextNs) continue;
-            Json data = subscription.latest != nullptr ? *subscription.latest : std::move(subscription.entries);
+            Json data = std::move(subscription.entries);
+            if (subscription.latest != nullptr) data = *subscription.latest;
             subscription.latest = nullptr;
             subscription.entries = nullptr;
             subscription.nextNs = nowNs + subscription.intervalNs;

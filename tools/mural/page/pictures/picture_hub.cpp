@@ -245,7 +245,7 @@ void PictureHub::encode(const Key& key, Channel& channel, int quality) {
     boost::asio::post(encoder_, std::move(task));
 }
 
-void PictureHub::snapshot(const Snapshot& snapshot, std::function<void(Result<std::string> bytes)> onDone) {
+void PictureHub::snapshot(const Snapshot& snapshot, const std::function<void(Result<std::string> bytes)>& onDone) {
     auto connected = PictureFeed::connect(io_, path_);
     if (!connected) return onDone(connected.error());
     const ClassLimits limits = limitsOf(PictureClass::Full, limits_);

@@ -64,7 +64,7 @@ public:
     [[nodiscard]] bool isWanted() const { return !viewers_.empty(); }
 
     // Encodes the present picture of the wall once.
-    void snapshot(const Snapshot& snapshot, std::function<void(Result<std::string> bytes)> onDone);
+    void snapshot(const Snapshot& snapshot, const std::function<void(Result<std::string> bytes)>& onDone);
 
     [[nodiscard]] const std::array<Totals, kPictureClasses>& totals() const { return totals_; }
     // Size of the wall's picture; 0: nobody has looked.
