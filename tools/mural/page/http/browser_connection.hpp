@@ -222,7 +222,7 @@ private:
         version_ = message.version();
         isHead_ = message.method() == http::verb::head;
         isKept_ = message.keep_alive();
-        if (beast::websocket::is_upgrade(message)) return upgrade(std::move(request), std::move(message));
+        if (beast::websocket::is_upgrade(message)) return upgrade(request, std::move(message));
         request.body = std::move(message.body());
         beast::get_lowest_layer(stream_).expires_never(); // the head has deadlines of its own
         site_.handle(std::move(request),
