@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
-#include <utility>
 
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/inheritance.hpp"
@@ -156,10 +155,11 @@ void checkFrames(const ResolvedConfig& config, config::Diagnostics& diagnostics)
         TreeCheck(config, all, diagnostics).run();
         for (const Known& k : all) {
             if (k.inherited.phase >= k.inherited.period && config.compounds[at(k.compound)].phase) {
-                std::string warning = "phase ";
-                warning.append(std::to_string(k.inherited.phase)).append(" does not occur with a period of ");
-                warning.append(std::to_string(k.inherited.period)).append(", so this compound never draws");
-                diagnostics.warn(config.compounds[at(k.compound)].at, std::move(warning),
+                const std::string phase = std::to_string(k.inherited.phase),
+                                  period = std::to_string(k.inherited.period);
+                diagnostics.warn(config.compounds[at(k.compound)].at,
+                                 "phase " + phase + " does not occur with a period of " + period +
+                                     ", so this compound never draws",
                                  "choose a phase below the period");
             }
         }

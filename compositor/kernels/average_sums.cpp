@@ -39,8 +39,7 @@ template <class T> size_t averageVectors(uint8_t* components, const T* sums, siz
     const hn::Rebind<uint8_t, decltype(di)> d8;
     const hn::Rebind<T, decltype(di)> dt;
     const size_t step = hn::Lanes(di);
-    const uint32_t half = n / 2;
-    const auto halfN = static_cast<float>(half);
+    const auto halfN = static_cast<float>(n / 2);
     size_t i = 0;
     for (; i + step <= count; i += step) {
         const auto loaded = hn::LoadU(dt, sums + i);

@@ -110,7 +110,7 @@ Result<void> AppLink::sendFrame(const wire::NativeFrame& frame, uint32_t number)
     PacketWriter& writer = writerFor(wire::kToAllNodes);
     writer.add(wire::kOpFrame, std::as_bytes(std::span(&frame, 1)));
     writer.add(wire::kOpSwap, std::as_bytes(std::span(swap)));
-    auto sent = writer.flush(); // after the deadline, the next call sends it
+    const auto sent = writer.flush(); // after the deadline, the next call sends it
     if (!sent && !isAlive()) return sent;
     link_->submitted(number);
     return {};

@@ -227,7 +227,7 @@ SliceValue SliceInterpreter::eval(TIntermNode* node) {
 
 SliceValue SliceInterpreter::evalUnary(TIntermUnary* node) {
     const TOperator op = node->getOp();
-    SliceValue value = eval(node->getOperand());
+    const SliceValue value = eval(node->getOperand());
     const bool isWhole = isWholeType(node->getOperand()->getType());
     if (isConversion(op)) return value;
     const bool isUp = op == EOpPreIncrement || op == EOpPostIncrement;
@@ -386,7 +386,7 @@ SliceValue SliceInterpreter::evalAggregate(Aggregate* node) {
         for (uint32_t i = 0; i < 4; ++i) vertex.push_back(builder_.input("gl_Vertex", i));
         return builder_.matrixTimesVector(matrix, vertex, 4);
     }
-    SliceValue unknown(scalarsOf(node->getType()), kUnknown);
+    const SliceValue unknown(scalarsOf(node->getType()), kUnknown);
     std::vector<SliceValue> values;
     for (TIntermNode* argument : arguments) {
         if (!argument->getAsTyped()) throw Unfollowed{"an unknown argument"};

@@ -17,6 +17,7 @@ from harness import cases, length, pictures, programs, session  # noqa: E402
 from harness.control import PATIENCE_SECONDS, ctl, result_of  # noqa: E402
 
 SIZE = "252x190"
+LAYOUTS = (("--tiles", "1x1"), ("--tiles", "2x2")) if length.LONG else (("--tiles", "2x2"),)
 BEFORE, DURING = 12, 8  # frames before and during a recording, at least
 
 
@@ -107,7 +108,7 @@ class Recorded:
         return None if difference.pixels == 0 else "%d pixels differ, %s" % (difference.pixels, difference.place)
 
 
-def exact(context, name, tiles=(("--tiles", "1x1"), ("--tiles", "2x2")) if length.LONG else (("--tiles", "2x2"),), **more):
+def exact(context, name, tiles=LAYOUTS, **more):
     recorded = Recorded(context, [context.program(name), "--frames", "100000", "--size", SIZE], **more)
     wrong = recorded.record()
     for layout in tiles:

@@ -44,17 +44,17 @@ def draw(context, options, frames=FRAMES, fault="", environment=None, wanted=0, 
             return wrong, shown, list(run.standard_error) + list(run.standard_output)
 
 
-SINGLE = {}  # by number of frames
+SINGLE = {}  # by number of frames, and of pictures from the end
 
 
 def single(context, frames=FRAMES, last=0):
     """Returns the pictures of one node; `last` as for draw()."""
-    if frames not in SINGLE:
+    if (frames, last) not in SINGLE:
         wrong, shown, lines = draw(context, "--tiles 1x1", frames, last=last)
         if wrong or len(shown) != (last or frames):
             raise SystemExit("one node fails: %s, %d pictures; %s" % (wrong, len(shown), " | ".join(lines[-3:])))
-        SINGLE[frames] = shown
-    return SINGLE[frames]
+        SINGLE[frames, last] = shown
+    return SINGLE[frames, last]
 
 
 # Pixels of a picture in which triangles have equal depths. Items of a queue have no order, so either may win.

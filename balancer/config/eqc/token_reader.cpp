@@ -54,7 +54,7 @@ void TokenReader::skipBrackets() {
 }
 
 std::string shown(const Token& token) {
-    std::string text(token.text.substr(0, 40));
+    const std::string text(token.text.substr(0, 40));
     switch (token.kind) {
     case TokenKind::Word: return "the word " + text;
     case TokenKind::Number: return "the number " + text;

@@ -8,7 +8,7 @@
 //   SCENE_KEEPS=1   only the first frame clears, the others draw over the old contents.
 //   SCENE_SHARES=1  depth test and many small triangles everywhere, so that --db divides the draws.
 //                   Each of up to 4 nodes draws visible ones; an overlay is not divided.
-//   SCENE_LISTS=1   calls the display list at many places, of which most are in few tiles.
+//   SCENE_LISTS=1   calls the display list at many places. Most calls touch few tiles.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>

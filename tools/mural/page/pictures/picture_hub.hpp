@@ -67,7 +67,7 @@ public:
     void snapshot(const Snapshot& snapshot, const std::function<void(Result<std::string> bytes)>& onDone);
 
     [[nodiscard]] const std::array<Totals, kPictureClasses>& totals() const { return totals_; }
-    // Size of the wall's picture; 0: nobody has looked.
+    // Size of the wall's picture; 0: unknown, because no viewer has requested it.
     [[nodiscard]] std::pair<int, int> wallSize() const { return {wallWidth_, wallHeight_}; }
 
 private:
