@@ -5,6 +5,7 @@ browser_outputs.py --build build/release [--cases proof] [--list]
 """
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -29,6 +30,12 @@ def outputs(viewer, accept=lambda data: True, seconds=20):
     return message and {entry["node"]: entry for entry in message["data"]}
 
 
+def output_ages(page):
+    """Returns mural_output_age_seconds by node."""
+    text = request(page.url, "/metrics", page.token)[2].decode()
+    return {int(node): float(age) for node, age in re.findall(r'^mural_output_age_seconds{.*node="(\d+)"} (\S+)$', text, re.M)}
+
+
 def proofs(context, display, options=()):
     """Hashes follow the pictures; a stopped node has none, and a program that rests keeps live outputs."""
     wrong = []
@@ -50,6 +57,9 @@ def proofs(context, display, options=()):
             nodes = {node["node"]: node["pid"] for node in result_of(context, run, "status")["nodes"]}
             os.kill(nodes[1], signal.SIGSTOP)
             frozen = outputs(viewer, lambda data: data[1]["ageSeconds"] > FROZEN_SECONDS, 30)
+            ages = output_ages(page)
+            if not (ages[1] > FROZEN_SECONDS and (display == "windows" or ages[0] < LIVE_SECONDS)):
+                wrong.append("mural_output_age_seconds while node 1 is stopped: %s" % ages)
             os.kill(nodes[1], signal.SIGCONT)
             # Nodes with windows wait for each other at each swap.
             if frozen is None or (display == "app" and frozen[0]["ageSeconds"] > LIVE_SECONDS):

@@ -52,13 +52,16 @@ TEST(PrometheusText, hasOneBlockWithHelpAndTypePerFamily) {
 }
 
 TEST(PrometheusText, hasTheValuesOfTheSession) {
-    const std::string text = prometheusText({sampleFrames()});
+    SessionFrames frames = sampleFrames();
+    frames.outputs = {{"nodes", {{{"node", 1}, {"hash", nullptr}, {"ageSeconds", 2.5}}}}};
+    const std::string text = prometheusText({frames});
     const std::string session = R"(session="mural-7-\"x\\")";
     for (const std::string& line :
          {"mural_frames_total{" + session + "} 40", "mural_frame_seconds{" + session + "} 0.01",
           "mural_program_wait_seconds_total{" + session + R"(,program="1",reason="frames"} 1.5)",
           "mural_node_up{" + session + R"(,node="0"} 1)", "mural_node_up{" + session + R"(,node="1"} 0)",
           "mural_node_clock_error_seconds{" + session + R"(,node="1"} 4e-05)",
+          "mural_output_age_seconds{" + session + R"(,node="1"} 2.5)",
           "mural_stage_seconds{" + session + R"(,process="node",node="1",stage="replay"} 0.004)"})
         EXPECT_NE(text.find(line + "\n"), std::string::npos) << line << "\n" << text;
 }

@@ -38,6 +38,7 @@ constexpr Family kFamilies[] = {
     {"mural_node_joins_total", "counter", "Returns of a node after a loss."},
     {"mural_node_silent_seconds", "gauge", "Time since the node's last message."},
     {"mural_node_clock_error_seconds", "gauge", "Bound of the error of the node's estimated clock."},
+    {"mural_output_age_seconds", "gauge", "Time since the node's last proof that its output is alive."},
 };
 
 std::string escaped(const std::string& text) {
@@ -137,6 +138,9 @@ std::string prometheusText(const std::vector<SessionFrames>& sessions) {
         for (const Json& clock : frames.clocks)
             metrics.add("mural_node_clock_error_seconds", {{"session", session}, {"node", wholeText(clock, "node")}},
                         numberOf(clock, "errorNs") / 1e9);
+        for (const Json& proof : arrayOf(frames.outputs, "nodes"))
+            metrics.add("mural_output_age_seconds", {{"session", session}, {"node", wholeText(proof, "node")}},
+                        numberOf(proof, "ageSeconds"));
         addStages(metrics, session, summarize(frames.frames));
     }
     return metrics.text();

@@ -85,4 +85,8 @@ std::optional<nlohmann::json> queryFrames(const std::string& controlPath, uint64
     return querySession(controlPath, "frames", arguments);
 }
 
+std::optional<nlohmann::json> queryOutputs(const std::string& controlPath) {
+    return querySession(controlPath, "outputs", nlohmann::json::object());
+}
+
 } // namespace mural::cli

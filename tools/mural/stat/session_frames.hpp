@@ -16,6 +16,7 @@ struct SessionFrames {
     std::vector<FrameRecord> frames; // in the order of their numbers
     uint64_t next = 1;               // number of the first frame of the next reply
     bool hasMore = false;            // the head has further frames now
+    nlohmann::json outputs;          // reply of the operation `outputs`; null: not requested
 };
 
 // Adds the frames of a reply, and replaces the other members. Errors: the reply is invalid.

@@ -111,6 +111,7 @@ Result<std::vector<SessionFrames>> collectAll(const std::string& session, double
     for (size_t i = 0; i < all.size(); ++i) { // switches statistics on
         if (auto alive = collectFrom(i, 1); !alive) return alive.error();
         all[i].frames.clear(); // of the time before
+        queryOutputs((*sessions)[i].controlPath); // requests the proofs that are fetched at the end
     }
     do {
         std::this_thread::sleep_for(
@@ -118,6 +119,8 @@ Result<std::vector<SessionFrames>> collectAll(const std::string& session, double
         for (size_t i = 0; i < all.size(); ++i)
             if (auto alive = collectFrom(i, kMeansFrames); !alive) return alive.error();
     } while (!deadline.passed());
+    for (size_t i = 0; i < all.size(); ++i)
+        if (auto outputs = queryOutputs((*sessions)[i].controlPath)) all[i].outputs = std::move(*outputs);
     std::erase_if(all, [](const SessionFrames& frames) { return !frames.status.is_object(); });
     return all;
 }

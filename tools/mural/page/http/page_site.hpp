@@ -54,6 +54,8 @@ private:
     void answerOperation(const Call& call, const OnResponse& onResponse);
     void answerTrace(size_t frames, int tries, const OnResponse& onResponse);
     void answerMetrics(const OnResponse& onResponse);
+    // outputs: the reply of the operation `outputs`; null: the head does not reply.
+    void answerMetricsOf(const nlohmann::json& outputs, const OnResponse& onResponse);
     void answerHealth(bool isReady, const OnResponse& onResponse);
     void performFor(const Call& call, const std::string& operation, const nlohmann::json& arguments,
                     const OnResponse& onResponse);

@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::chrono::milliseconds kTraceRetry{500};
+constexpr std::chrono::milliseconds kProofTime{200}; // within which the nodes usually prove their outputs
 
 Result<cli::SessionFrames> framesOf(const Json& reply) {
     const auto result = reply.find("result");
@@ -46,10 +47,24 @@ void PageSite::answerTrace(size_t count, int tries, const OnResponse& onResponse
     });
 }
 
+// Requests the proofs of the outputs first, so that a scrape reports their age at its own time.
 void PageSite::answerMetrics(const OnResponse& onResponse) {
+    hub_.askHead("outputs", Json::object(), [this, onResponse](const Json&) {
+        const auto timer = std::make_shared<boost::asio::steady_timer>(io_, kProofTime);
+        timer->async_wait([this, timer, onResponse](const boost::system::error_code& error) {
+            if (error) return;
+            hub_.askHead("outputs", Json::object(), [this, onResponse](const Json& reply) {
+                answerMetricsOf(reply.value("result", Json()), onResponse);
+            });
+        });
+    });
+}
+
+void PageSite::answerMetricsOf(const Json& outputs, const OnResponse& onResponse) {
     constexpr int kMeansOf = 120; // as mural stat
-    hub_.askHead("frames", {{"since", 1}, {"newest", kMeansOf}}, [this, onResponse](const Json& reply) {
+    hub_.askHead("frames", {{"since", 1}, {"newest", kMeansOf}}, [this, outputs, onResponse](const Json& reply) {
         auto frames = framesOf(reply);
+        if (frames) frames->outputs = outputs;
         std::string text = frames ? cli::prometheusText({*frames}) : std::string();
         text += pageMetrics(hub_.numbers(), hub_.hello().value("session", std::string()), frames.ok());
         onResponse({200, "text/plain; version=0.0.4; charset=utf-8", std::move(text), {}});
