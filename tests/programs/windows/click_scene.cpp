@@ -1,6 +1,6 @@
-// Draws one frame per mouse click, and nothing in between: a shaded surface that turns, and a square in the middle whose
-// colour differs from that of the frame before. tools/bench/page_latency measures the time from the click to this colour.
-// Prints "window ID" first.
+// Draws one frame per mouse click, and waits in between. Each frame turns a shaded surface and changes the colour of a
+// square in the middle. tools/bench/page_latency measures the time from the click to this colour. The first line of
+// output is "window ID".
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -35,8 +35,8 @@ Result<std::vector<nlohmann::json>> queryRunningSessions(const std::string& sess
 // session does not reply.
 std::optional<nlohmann::json> queryFrames(const std::string& controlPath, uint64_t sinceFrame, int newest = 0);
 
-// Returns the latest proofs that the outputs are alive, and requests the next ones (docs/reference/control.md, operation
-// `outputs`). Empty: the session does not reply.
+// Returns the latest proofs that the outputs are alive, and requests the next ones (docs/reference/control.md,
+// operation `outputs`). Empty: the session does not reply.
 std::optional<nlohmann::json> queryOutputs(const std::string& controlPath);
 
 } // namespace mural::cli

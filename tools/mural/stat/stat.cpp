@@ -110,7 +110,7 @@ Result<std::vector<SessionFrames>> collectAll(const std::string& session, double
     const auto collectFrom = [&](size_t i, int newest) { return collect((*sessions)[i], all[i], newest); };
     for (size_t i = 0; i < all.size(); ++i) { // switches statistics on
         if (auto alive = collectFrom(i, 1); !alive) return alive.error();
-        all[i].frames.clear(); // of the time before
+        all[i].frames.clear();                    // of the time before
         queryOutputs((*sessions)[i].controlPath); // requests the proofs that are fetched at the end
     }
     do {
