@@ -44,6 +44,16 @@ Display* openDisplayOnce() {
     return display;
 }
 
+::Window topmostWindow(Display* display) {
+    ::Window root = 0, parent = 0, *children = nullptr;
+    unsigned count = 0;
+    if (XQueryTree(display, DefaultRootWindow(display), &root, &parent, &children, &count) == 0 || count == 0)
+        fail("no window");
+    const ::Window top = children[count - 1];
+    XFree(children);
+    return top;
+}
+
 XWindow::XWindow(const XVisualInfo& visual, int x, int y, int width, int height) : display_(openDisplayOnce()) {
     const ::Window root = RootWindow(display_, visual.screen);
     colormap_ = XCreateColormap(display_, root, visual.visual, AllocNone);

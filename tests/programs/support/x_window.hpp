@@ -8,6 +8,10 @@ namespace programs {
 
 Display* openDisplayOnce(); // thread-safe connection, opened on first use, never closed
 
+// Returns the topmost window on the root. It is the program's own if the program has one window and no window manager
+// runs. Ends the program if there is none.
+::Window topmostWindow(Display* display);
+
 class XWindow {
 public:
     // Creates and maps the window, and waits until it is visible.

@@ -21,17 +21,6 @@ constexpr int kWaitMs = 1000; // so that END_FILE ends the program without a cli
 // Colours that stay apart after a lossy compression.
 constexpr std::array<programs::Color, 4> kColors = {{{1, 0, 0}, {0, 0.8F, 0}, {0, 0, 1}, {1, 1, 0}}};
 
-// Returns the topmost window on the root, which is the only one of this program.
-::Window ownWindow(Display* display) {
-    ::Window root = 0, parent = 0, *children = nullptr;
-    unsigned count = 0;
-    if (XQueryTree(display, DefaultRootWindow(display), &root, &parent, &children, &count) == 0 || count == 0)
-        programs::fail("no window");
-    const ::Window top = children[count - 1];
-    XFree(children);
-    return top;
-}
-
 float heightAt(float x, float y) { return 0.25F * std::sin(5 * x) * std::cos(4 * y); }
 
 void vertexAt(int column, int row) {
@@ -45,7 +34,7 @@ void vertexAt(int column, int row) {
 
 void setUp(programs::Window&) {
     Display* display = programs::openDisplayOnce();
-    const ::Window window = ownWindow(display);
+    const ::Window window = programs::topmostWindow(display);
     XSelectInput(display, window, ButtonPressMask);
     XSync(display, False);
     std::printf("window %lu\n", window);

@@ -11,17 +11,6 @@ namespace {
 
 int events = 0;
 
-// Returns the topmost window on the root, which is the only one of this program.
-::Window ownWindow(Display* display) {
-    ::Window root = 0, parent = 0, *children = nullptr;
-    unsigned count = 0;
-    if (XQueryTree(display, DefaultRootWindow(display), &root, &parent, &children, &count) == 0 || count == 0)
-        programs::fail("no window");
-    const ::Window top = children[count - 1];
-    XFree(children);
-    return top;
-}
-
 void printKey(XKeyEvent& event) {
     char text[16];
     KeySym keysym = 0;
@@ -51,7 +40,7 @@ int main(int argc, char** argv) {
         argc, argv, {},
         [](programs::Window&) {
             Display* display = programs::openDisplayOnce();
-            const ::Window window = ownWindow(display);
+            const ::Window window = programs::topmostWindow(display);
             XSelectInput(display, window,
                          KeyPressMask | KeyReleaseMask | ButtonPressMask | ButtonReleaseMask | PointerMotionMask);
             XSetInputFocus(display, window, RevertToParent, CurrentTime);
