@@ -26,8 +26,8 @@ elseif(MURAL_UNITY)
 endif()
 # GCC treats the sources of a unity batch as headers and warns about their anonymous namespaces.
 add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
-# GCC 12 collects garbage from 128 MiB on. A unity batch needs up to five times as much, so it collects many times, which takes
-# a sixth of its CPU time. Starting at 1 GiB adds a quarter to the memory of a batch (docs/decisions/0009).
+# GCC 12 collects garbage from a heap of 128 MiB on, which takes a sixth of the CPU time of a unity batch. A limit of 1 GiB
+# adds a quarter to the memory of the batch (docs/decisions/0009).
 if(MURAL_SANITIZE OR MURAL_UNITY)
   add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:--param=ggc-min-heapsize=1048576>)
 endif()

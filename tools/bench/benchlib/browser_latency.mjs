@@ -65,7 +65,6 @@ try {
         // Different phases relative to the page's own timers.
         await wait(Number(pauseMs) + (i * 37) % 100);
     }
-    if (process.env.PAGE_SCREENSHOT) await page.screenshot({ path: process.env.PAGE_SCREENSHOT });
     console.log(JSON.stringify({ times, bytesPerClick: bytes / Number(clicks), size }));
 } finally {
     await browser.close();

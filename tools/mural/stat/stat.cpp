@@ -26,7 +26,7 @@ constexpr double kOnceSeconds = 1.0; // between the snapshots of a single report
 constexpr int kExitNone = 1;
 constexpr std::chrono::milliseconds kPoll{200};       // between two requests for frames; the head keeps 600
 constexpr std::chrono::milliseconds kMeansPoll{2000}; // the same for means; statistics stay on for 10 s
-constexpr int kMeansFrames = 120;      // of which means are taken, so that fast programs cost no more than others
+constexpr int kMeansFrames = 120;      // newest frames of a mean, so that fast programs cost no more than others
 constexpr int64_t kNoFrameMs = 10'000; // limit for the next frame of a trace
 
 int fail(const std::string& why, int status) {
@@ -101,8 +101,8 @@ int writeTrace(const StatOptions& options) {
     return reportTo(options.traceFile, jsonText(chromeTrace(frames)));
 }
 
-// Collects the statistics of all sessions over some seconds.
-Result<std::vector<SessionFrames>> collectAll(const std::string& session, double seconds) {
+// Collects the statistics of all sessions over some seconds, withOutputs: also the proofs of their outputs.
+Result<std::vector<SessionFrames>> collectAll(const std::string& session, double seconds, bool withOutputs) {
     auto sessions = findRunningSessions(session);
     if (!sessions) return sessions.error();
     std::vector<SessionFrames> all(sessions->size());
@@ -110,16 +110,17 @@ Result<std::vector<SessionFrames>> collectAll(const std::string& session, double
     const auto collectFrom = [&](size_t i, int newest) { return collect((*sessions)[i], all[i], newest); };
     for (size_t i = 0; i < all.size(); ++i) { // switches statistics on
         if (auto alive = collectFrom(i, 1); !alive) return alive.error();
-        all[i].frames.clear();                    // of the time before
-        queryOutputs((*sessions)[i].controlPath); // requests the proofs that are fetched at the end
+        all[i].frames.clear(); // of the time before
     }
+    for (size_t i = 0; withOutputs && i < all.size(); ++i)
+        queryOutputs((*sessions)[i].controlPath); // requests the proofs
     do {
         std::this_thread::sleep_for(
             std::min<std::chrono::nanoseconds>(kMeansPoll, std::chrono::nanoseconds(deadline.leftNs())));
         for (size_t i = 0; i < all.size(); ++i)
             if (auto alive = collectFrom(i, kMeansFrames); !alive) return alive.error();
     } while (!deadline.passed());
-    for (size_t i = 0; i < all.size(); ++i)
+    for (size_t i = 0; withOutputs && i < all.size(); ++i)
         if (auto outputs = queryOutputs((*sessions)[i].controlPath)) all[i].outputs = std::move(*outputs);
     std::erase_if(all, [](const SessionFrames& frames) { return !frames.status.is_object(); });
     return all;
@@ -127,7 +128,8 @@ Result<std::vector<SessionFrames>> collectAll(const std::string& session, double
 
 int printMetrics(const StatOptions& options) {
     while (true) {
-        auto sessions = collectAll(options.session, options.watchSeconds > 0 ? options.watchSeconds : kOnceSeconds);
+        auto sessions =
+            collectAll(options.session, options.watchSeconds > 0 ? options.watchSeconds : kOnceSeconds, true);
         if (!sessions) return fail(sessions.error().message, launch::kExitUsage);
         if (sessions->empty() && options.watchSeconds == 0) return failNone(options);
         fmt::print("{}", prometheusText(*sessions));
@@ -141,7 +143,7 @@ int watch(const StatOptions& options) {
     auto before = queryRunningSessions(options.session);
     if (!before) return fail(before.error().message, launch::kExitUsage);
     while (true) {
-        auto sessions = collectAll(options.session, options.watchSeconds);
+        auto sessions = collectAll(options.session, options.watchSeconds, false);
         if (!sessions) return fail(sessions.error().message, launch::kExitUsage);
         std::vector<nlohmann::json> now;
         for (const SessionFrames& frames : *sessions) now.push_back(frames.status);

@@ -8,6 +8,7 @@
 #include "common/json/json_text.hpp"
 #include "tools/mural/page/http/http_text.hpp"
 #include "tools/mural/page/http/page_site.hpp"
+#include "tools/mural/page/hub/output_list.hpp"
 #include "tools/mural/stat/chrome_trace.hpp"
 #include "tools/mural/stat/prometheus_text.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::chrono::milliseconds kTraceRetry{500};
-constexpr std::chrono::milliseconds kProofTime{200}; // within which the nodes usually prove their outputs
 
 Result<cli::SessionFrames> framesOf(const Json& reply) {
     const auto result = reply.find("result");
@@ -49,8 +49,9 @@ void PageSite::answerTrace(size_t count, int tries, const OnResponse& onResponse
 
 // Requests the proofs of the outputs first, so that a scrape reports their age at its own time.
 void PageSite::answerMetrics(const OnResponse& onResponse) {
-    hub_.askHead("outputs", Json::object(), [this, onResponse](const Json&) {
-        const auto timer = std::make_shared<boost::asio::steady_timer>(io_, kProofTime);
+    hub_.askHead("outputs", Json::object(), [this, onResponse](const Json& requested) {
+        if (!requested.contains("result")) return answerMetricsOf(Json(), onResponse);
+        const auto timer = std::make_shared<boost::asio::steady_timer>(io_, std::chrono::nanoseconds(kProofTimeNs));
         timer->async_wait([this, timer, onResponse](const boost::system::error_code& error) {
             if (error) return;
             hub_.askHead("outputs", Json::object(), [this, onResponse](const Json& reply) {

@@ -25,8 +25,7 @@ constexpr std::chrono::milliseconds kBusyTick{10}, kCalmTick{100};
 constexpr int64_t kAliveEveryNs = 2 * kNsPerS, kAliveNs = 6 * kNsPerS;
 constexpr int64_t kFramesEveryNs = 250 * kNsPerMs;
 constexpr int64_t kOutputsEveryNs = kNsPerS, kWallEveryNs = 5 * kNsPerS;
-constexpr int64_t kProofTimeNs = 200 * kNsPerMs; // within which the nodes usually prove their outputs
-constexpr size_t kMaxWaiting = 64;               // requests of a viewer without a reply
+constexpr size_t kMaxWaiting = 64; // requests of a viewer without a reply
 constexpr size_t kMaxLogLines = 1000;
 constexpr const char* kLinksName = "page-links"; // removed by nodes/launch/session_socket.cpp
 
