@@ -58,7 +58,7 @@ def proofs(context, display, options=()):
             os.kill(nodes[1], signal.SIGSTOP)
             frozen = outputs(viewer, lambda data: data[1]["ageSeconds"] > FROZEN_SECONDS, 30)
             ages = output_ages(page)
-            if not (ages[1] > FROZEN_SECONDS and (display == "windows" or ages[0] < LIVE_SECONDS)):
+            if not (ages.get(1, 0) > FROZEN_SECONDS and (display == "windows" or ages.get(0, FROZEN_SECONDS) < LIVE_SECONDS)):
                 wrong.append("mural_output_age_seconds while node 1 is stopped: %s" % ages)
             os.kill(nodes[1], signal.SIGCONT)
             # Nodes with windows wait for each other at each swap.
