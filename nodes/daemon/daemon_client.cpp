@@ -8,6 +8,7 @@
 
 #include "nodes/daemon/channel_socket.hpp"
 #include "transport/system_error.hpp"
+#include "transport/tcp/socket_address.hpp"
 #include "transport/tcp/tcp_address.hpp"
 #include "transport/tcp/tcp_connection.hpp"
 #include "transport/tcp/tcp_race.hpp"
@@ -35,8 +36,10 @@ Result<FileDescriptor> connectTo(const DaemonClient& call) {
         if (socket && prepareTcpSocket(socket->get())) return socket;
         why = socket ? "the connection was closed immediately" : socket.error().message;
     }
-    return Error{"cannot connect to port " + std::to_string(call.port) + ": " + why +
-                 "; check that `mural node --wait` runs there"};
+    std::string endpoints;
+    for (const std::string& host : call.addresses)
+        endpoints += (endpoints.empty() ? "" : ", ") + endpointText(host, call.port);
+    return Error{"cannot connect to " + endpoints + ": " + why + "; check that `mural node --wait` runs there"};
 }
 
 Result<void> writeAll(int fd, std::span<const std::byte> bytes) {

@@ -39,14 +39,14 @@ TEST(Report, showsDifferencesAndLostNodes) {
     const HeadEvent e = event(
         R"({"event":"report","frames":90,"seconds":1.5,"framesPerSecond":60.0,"bytesPerFrame":12345,"verifiedFrames":90,)"
         R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"squaredDifference":9,"savedPictures":1,"lastPicture":"out/a.png","recording":"a.mural","recordedFrames":90,"recordedBytes":1234567,)"
-        R"("callsUnsupported":1,"nodes":[{"node":0,"frames":90},{"node":1,"frames":12,"lost":true}]})");
+        R"("callsUnsupported":1,"nodes":[{"node":0,"frames":90},{"node":1,"frames":12,"lost":true,"hasConnected":true},{"node":2,"lost":true}]})");
     EXPECT_EQ(
         reportLines(e.report),
         (std::vector<std::string>{"90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node, 0 round trips",
                                   "verified 90 frames, 70778880 pixels: 3 differ, by up to 2 of 255, PSNR 123.1 dB",
                                   "saved 1 picture, the last in out/a.png", "recorded 90 frames in a.mural, 1.23 MB",
                                   "1 call of unsupported commands; see mural list-commands --unsupported",
-                                  "node 1 was lost after 12 frames"}));
+                                  "node 1 was lost after 12 frames", "node 2 did not connect"}));
 }
 
 TEST(Report, showsUnverifiedFrames) {

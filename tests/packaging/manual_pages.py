@@ -12,6 +12,7 @@ import tempfile
 
 import command_line
 
+TREE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 failures = []
 
 
@@ -52,6 +53,8 @@ def main():
             for option in command_line.options_of(mural, command):
                 options += 1
                 expect(re.search(r'^ +.*%s\b' % re.escape(option), re.split('^OPTIONS$', text, flags=re.M)[-1], re.M), '%s lacks %s' % (name, option))
+            for document in re.findall(r'docs/[a-z/-]+[.]md', text):  # the package installs docs/
+                expect(os.path.exists(os.path.join(TREE, document)), '%s names %s, which does not exist' % (name, document))
             if command:
                 expect('EXIT STATUS' in text and 'EXAMPLES' in text, '%s: a section is missing' % name)
         expect(options > 100, 'only %d options were found' % options)

@@ -190,7 +190,9 @@ std::vector<std::string> reportLines(const SessionReport& r) {
         if (n.joins > 0)
             lines.push_back(fmt::format("node {} rejoined {} time{}, the last time in {:.1f} s, with {}", n.node,
                                         n.joins, plural(n.joins), n.secondsToRejoin, sizeText(n.snapshotBytes)));
-        if (n.lost)
+        if (n.lost && !n.hasConnected)
+            lines.push_back(fmt::format("node {} did not connect", n.node));
+        else if (n.lost)
             lines.push_back(fmt::format("node {} was lost after {} frame{}", n.node, n.frames, plural(n.frames)));
     }
     return lines;

@@ -134,9 +134,10 @@ SessionReport reportFrom(const Json& j) {
             if (!n.is_object()) continue;
             const auto swaps = n.find("swapBarrier");
             r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost"),
-                               swapsFrom(swaps != n.end() ? *swaps : Json()), whole(n, "joins"),
-                               real(n, "secondsToRejoin"), real(n, "snapshotBytes"), real(n, "pictureBytes"),
-                               real(n, "pictureRawBytes"), cullingFrom(n.value("culling", Json()))});
+                               truth(n, "hasConnected"), swapsFrom(swaps != n.end() ? *swaps : Json()),
+                               whole(n, "joins"), real(n, "secondsToRejoin"), real(n, "snapshotBytes"),
+                               real(n, "pictureBytes"), real(n, "pictureRawBytes"),
+                               cullingFrom(n.value("culling", Json()))});
         }
     }
     return r;

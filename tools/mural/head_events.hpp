@@ -30,6 +30,7 @@ struct NodeReport {
     int64_t frames = 0;
     double cpuSeconds = 0;
     bool lost = false;
+    bool hasConnected = false;
     SwapReport swaps;
     int64_t joins = 0; // number of returns; the next two describe the last one
     double secondsToRejoin = 0, snapshotBytes = 0;

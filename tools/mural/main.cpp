@@ -124,7 +124,9 @@ public:
         app_.formatter(std::make_shared<HelpFormatter>());
         app_.set_version_flag("--version", mural::cli::versionText(), "Print the version and exit");
         app_.require_subcommand(0, 1); // later words may be names of commands, such as mural ctl help
-        app_.footer("mural COMMAND --help describes a command.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  "
+        app_.footer("mural COMMAND --help describes a command. Pages named docs/... are in the source tree; the "
+                    "package installs "
+                    "them in /usr/share/doc/mural/docs.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  "
                     "mural stat\n  mural doctor");
         addRun();
         addRecordings();

@@ -398,7 +398,12 @@ template <class Handler> Result<void> NodeConnection::handle(Handler&& handler) 
 // The exit status is a better explanation than the broken connection.
 std::string NodeConnection::reasonOfEnd() {
     if (process_) {
-        if (const auto how = process_->waitEnded(Deadline::inMs(kStatusPatienceMs))) return *how;
+        // On another host the command that reaches the node has ended, such as ssh. Its name avoids confusion with the
+        // node.
+        if (const auto how = process_->waitEnded(Deadline::inMs(kStatusPatienceMs))) {
+            const std::string details = process_->details();
+            return details.starts_with(" of ") || details.starts_with(": ") ? *how + details : *how;
+        }
     }
     const std::lock_guard lock(reasonMutex_);
     return reason_.empty() ? "its connection ended" : reason_;

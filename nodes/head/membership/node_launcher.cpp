@@ -126,6 +126,13 @@ Result<std::unique_ptr<NodeAcceptor>> openGate(const SessionPlan& plan) {
     return NodeAcceptor::open(!remote);
 }
 
+// The command that reaches a node on another host, and its last lines. Empty for a node of this machine.
+std::string commandOf(const LaunchedNode& node) {
+    if (!node.process || node.plan.reach != NodeReach::LaunchCommand) return "";
+    const std::string details = node.process->details();
+    return details.starts_with(" of ") ? "; its command is " + details.substr(4) : details;
+}
+
 // Returns true after the node has connected. Errors: why the node failed, without its name.
 Result<bool> pollConnection(LaunchedNode& node, NodeAcceptor& gate, Deadline deadline, int64_t patienceMs) {
     node.connection = gate.take(node.plan.node);
@@ -134,8 +141,8 @@ Result<bool> pollConnection(LaunchedNode& node, NodeAcceptor& gate, Deadline dea
     const bool isHandedOver = how == "exit status 0" && node.process->mayHandOver();
     if (how && !isHandedOver) return Error{"did not start: " + *how + node.process->details()};
     if (deadline.passed()) {
-        return Error{"did not connect within " + std::to_string(patienceMs / 1000) +
-                     " s; check that it can connect to port " + std::to_string(gate.port()) +
+        return Error{"did not connect within " + std::to_string(patienceMs / 1000) + " s" + commandOf(node) +
+                     "; check that it can connect to port " + std::to_string(gate.port()) +
                      " of this machine, or raise --start-timeout"};
     }
     return false;
@@ -189,7 +196,8 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
     }
     for (LaunchedNode& node : nodes) {
         if (node.connection || !node.absence.empty()) continue;
-        node.absence = "did not connect within " + std::to_string(options.lateMs / 1000) + " s after the others";
+        node.absence =
+            "did not connect within " + std::to_string(options.lateMs / 1000) + " s after the others" + commandOf(node);
         if (node.plan.pass.ranges > 1)
             return Error{nameOf(node.plan) + " " + node.absence + "; sort-last nodes (--db) begin together"};
         progress.giveUp(node.plan.node);

@@ -510,6 +510,7 @@ SessionNumbers HeadSession::numbers() {
     result.nodes = totals_;
     for (NodeTotals& totals : result.nodes) {
         totals.frames = frames_.framesOf(totals.node);
+        totals.hasConnected = facts_[static_cast<size_t>(totals.node)].pid != 0;
         totals.lost = totals.lost && !stopped_.contains(totals.node); // an operator stopped it in order
     }
     return result;

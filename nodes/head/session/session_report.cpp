@@ -207,6 +207,7 @@ Json reportOf(const SessionNumbers& n) {
                          {"swapBarrier", swapJson(node.swaps)},
                          {"culling", cullingJson(node.culling)},
                          {"lost", node.lost},
+                         {"hasConnected", node.hasConnected},
                          {"joins", node.joins},
                          {"snapshotBytes", node.snapshotBytes},
                          {"secondsToRejoin", node.secondsToRejoin}});

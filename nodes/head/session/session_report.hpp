@@ -49,6 +49,7 @@ struct NodeTotals {
     SwapTotals swaps;
     CullingTotals culling;
     bool lost = false;
+    bool hasConnected = false;
     int64_t joins = 0;          // number of returns
     int64_t snapshotBytes = 0;  // at the last return: size of the snapshot…
     double secondsToRejoin = 0; // …and time from the loss to the first frame

@@ -74,12 +74,11 @@ int discoverCommand(const DiscoverArguments& a) {
     else
         printTable(d);
     if (!d.nodes.empty()) return 0;
+    if (a.asJson) return 1;
+    fmt::print(stderr, "mural discover: no daemon in this network; start one with: mural node --wait --secret FILE\n");
     // The beacon works without Avahi, so problems are reported only if nothing was found.
     for (const std::string& trouble : {d.beaconTrouble, d.avahiTrouble})
-        if (!trouble.empty() && !a.asJson) fmt::print(stderr, "mural discover: {}\n", trouble);
-    if (!a.asJson)
-        fmt::print(stderr,
-                   "mural discover: no daemon in this network; start one with: mural node --wait --secret FILE\n");
+        if (!trouble.empty()) fmt::print(stderr, "mural discover: searched in part: {}\n", trouble);
     return 1;
 }
 

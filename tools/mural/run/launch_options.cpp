@@ -121,7 +121,9 @@ Result<std::string> chooseLauncher(const RunArguments& a, const launch::Environm
     if (c.hosts.empty() && job && a.config)
         return std::string("the file names the hosts; --launch slurm selects the nodes of the job");
     if (c.hosts.empty()) return std::string();
-    return job ? fmt::format("not all hosts are in Slurm job {}", job->id) : std::string("the nodes have hosts");
+    return job ? fmt::format("not all hosts are in Slurm job {}, which has {}", job->id,
+                             launch::joined(job->hosts, ","))
+               : std::string("the nodes have hosts");
 }
 
 } // namespace
