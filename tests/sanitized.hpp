@@ -11,6 +11,6 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-constexpr uint64_t rounds(uint64_t count) { return kSanitized ? (count + 3) / 4 : count; }
+constexpr uint64_t rounds(uint64_t count) { return kSanitized ? (count + 7) / 8 : count; }
 
 } // namespace mural::testing

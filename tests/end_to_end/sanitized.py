@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs test programs through a `mural` that was built with the address and undefined-behaviour sanitizers.
 
-  sanitized.py --build build/asan --programs client_arrays,es3_scene --layouts 2x2 --size 253x191 --frames 3
+  sanitized.py --build build/asan --programs client_arrays,es3_scene --layouts 2x1 --size 253x191 --frames 3
 
 As run_exact.py; in addition no process of a run may report anything: launcher, head, nodes, and the library in the
 program. The program itself is built without sanitizers, so their runtime is preloaded there. At the end a node reads
@@ -82,7 +82,7 @@ class SanitizedComparison(run_exact.Comparison):
 
 
 def add_arguments(parser):
-    parser.set_defaults(options="--display app --verify", programs=PROGRAMS, layouts="2x2", size="253x191", frames=3)
+    parser.set_defaults(options="--display app --verify", programs=PROGRAMS, layouts="2x1", size="253x191", frames=3)
 
 
 if __name__ == "__main__":
