@@ -70,7 +70,7 @@ def clean_environment(display):
     """Returns only the variables that a program needs, so that results do not depend on the caller's settings."""
     keep = ("PATH", "HOME", "TMPDIR", "XDG_RUNTIME_DIR", "LANG", "LC_ALL", "MURAL_PLANT",
             "MURAL_LOG", "ASAN_OPTIONS", "UBSAN_OPTIONS", "LD_LIBRARY_PATH", "LIBGL_ALWAYS_SOFTWARE",
-            "EGL_PLATFORM", "LP_NUM_THREADS", "CLEARS_FRONT",
+            "EGL_PLATFORM", "LP_NUM_THREADS", "CLEARS_FRONT", "GLIBC_TUNABLES", "MESA_SHADER_CACHE_DIR",
             # selection of the driver: a Mesa other than the system's
             "GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "LIBGL_DRIVERS_PATH", "GBM_BACKENDS_PATH",
             "VK_ICD_FILENAMES", "VK_DRIVER_FILES", "__EGL_VENDOR_LIBRARY_DIRS")
