@@ -26,30 +26,57 @@ export function launch() {
     return chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-gpu', '--enable-precise-memory-info', '--js-flags=--expose-gc'] });
 }
 
-export async function startMock(options = {}) {
-    const mock = new Mock({ folder: kFolder, ...options });
+// Most tests need no 24 pictures per second, whose decoding and drawing is most of their work.
+const kStepsPerSecond = 8;
+
+export async function startMock({ isQuiet = false, video = false } = {}) {
+    const mock = new Mock({ folder: kFolder, video, isQuiet: isQuiet || !video });
+    if (!isQuiet && !video) mock.timer = setInterval(() => mock.step(1 / kStepsPerSecond), 1000 / kStepsPerSecond);
     mock.port = await mock.listen();
     mock.address = `http://127.0.0.1:${mock.port}/`;
     return mock;
 }
 
-// Opens the page. `faults` collects console errors, exceptions and requests to other hosts.
-export async function open(browser, mock, { viewport = kWide, colorScheme = 'light', token = 'operate-token', view = '', before } = {}) {
-    const isPhone = viewport.width < 600;
-    const context = await browser.newContext({ viewport, colorScheme, hasTouch: isPhone, isMobile: isPhone });
-    const page = await context.newPage();
-    const faults = [];
+// Pages that no test uses now, by the form of their screen. A new context costs Chromium two processes.
+const idle = { wide: [], phone: [] };
+
+async function newTab(browser, form) {
+    const isPhone = form === 'phone';
+    const context = await browser.newContext({ viewport: isPhone ? kPhone : kWide, hasTouch: isPhone, isMobile: isPhone });
+    const tab = { context, page: await context.newPage(), faults: [], mock: null };
+    const { page } = tab;
     page.on('console', message => {
-        if (message.type() === 'error' || message.type() === 'warning') faults.push(message.text());
+        if (message.type() === 'error' || message.type() === 'warning') tab.faults.push(message.text());
     });
-    page.on('pageerror', error => faults.push(error.message));
+    page.on('pageerror', error => tab.faults.push(error.message));
     page.on('request', request => {
         const { host, protocol } = new URL(request.url());
-        if (protocol !== 'blob:' && host !== `127.0.0.1:${mock.port}`) faults.push(`request to ${request.url()}`);
+        if (protocol === 'http:' && host === `127.0.0.1:${tab.mock.port}`) return;
+        if (protocol !== 'blob:' && protocol !== 'about:') tab.faults.push(`request to ${request.url()}`);
     });
+    return tab;
+}
+
+// Opens the page. `faults` collects console errors, exceptions and requests to other hosts. The next test gets the same
+// tab after close(); `isFresh` and `before` make a new one, without anything that an earlier page has left.
+export async function open(browser, mock, { viewport = kWide, colorScheme = 'light', token = 'operate-token', view = '', before, isFresh = false } = {}) {
+    const form = viewport === kPhone ? 'phone' : 'wide';
+    const isShared = !isFresh && !before;
+    const tab = (isShared && idle[form].pop()) || await newTab(browser, form);
+    const { page, context } = tab;
+    const faults = (tab.faults = []);
+    tab.mock = mock;
+    await page.emulateMedia({ colorScheme });
     if (before) await page.addInitScript(before);
     await page.goto(`${mock.address}#t=${token}${view && `&${view}`}`);
-    return { page, context, faults };
+    const close = async () => {
+        if (!isShared) return context.close();
+        await page.evaluate(() => [sessionStorage, localStorage].forEach(storage => storage.clear()));
+        await page.goto('about:blank');
+        await page.mouse.move(0, 0);
+        idle[form].push(tab);
+    };
+    return { page, faults, close };
 }
 
 export async function show(page, view) {

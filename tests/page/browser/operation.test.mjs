@@ -15,12 +15,12 @@ after(async () => {
 });
 
 async function onPage(view, run) {
-    const { page, context, faults } = await open(browser, mock, { view });
+    const { page, faults, close } = await open(browser, mock, { view });
     await page.waitForSelector(`nav a[aria-current][href="#${view.split('/')[0]}"]`);
     mock.requests.length = 0;
     await run(page);
     assert.deepEqual(faults, []);
-    await context.close();
+    await close();
 }
 
 const sent = op => mock.requests.filter(request => request.op === op).map(request => request.args);
@@ -117,7 +117,7 @@ test('a node is stopped by force only after the session has refused, identified,
 }));
 
 test('after a loss of the node its segment changes within a second', async () => {
-    const { page, context } = await open(browser, mock);
+    const { page, close } = await open(browser, mock);
     await waitForPicture(page);
     const begin = performance.now();
     mock.scene.lose(0);
@@ -126,5 +126,5 @@ test('after a loss of the node its segment changes within a second', async () =>
     console.log(`lost node is marked after ${Math.round(passed)} ms`);
     assert.ok(passed < 3000);
     mock.scene.revive(0);
-    await context.close();
+    await close();
 });

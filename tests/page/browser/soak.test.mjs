@@ -12,7 +12,7 @@ after(() => browser.close());
 test('hours of messages leave the memory of the page stable', async () => {
     const quiet = await startMock({ isQuiet: true });
     try {
-        const { page, context, faults } = await open(browser, quiet, { view: 'timeline' });
+        const { page, faults, close } = await open(browser, quiet, { view: 'timeline' });
         await page.waitForSelector('nav a[aria-current][href="#timeline"]');
         await until(() => [...quiet.clients][0]?.topics.has('timeline'), 'the subscription');
         const [client] = quiet.clients;
@@ -51,7 +51,7 @@ test('hours of messages leave the memory of the page stable', async () => {
         assert.ok(late.bytes < early.bytes * 1.3 + 12e6, `${early.bytes} → ${late.bytes} bytes`);
         assert.ok(late.elements < early.elements * 1.3 + 50, `${early.elements} → ${late.elements} elements`);
         assert.deepEqual(faults, []);
-        await context.close();
+        await close();
     } finally {
         await quiet.close();
     }

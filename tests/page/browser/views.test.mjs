@@ -50,29 +50,33 @@ function inspect() {
     return { nameless, faint, overflow: document.documentElement.scrollWidth - innerWidth };
 }
 
-for (const [sizeName, viewport] of [['1280x720', kWide], ['390x844', kPhone]])
-    for (const colorScheme of ['light', 'dark'])
-        test(`all views at ${sizeName}, ${colorScheme}`, async () => {
-            const { page, context, faults } = await open(browser, mock, { viewport, colorScheme });
-            await waitForPicture(page);
-            for (const view of [...kAllViews, 'wall/2']) {
-                await show(page, view);
-                const proof = view === 'wall/2' ? 'per frame' : kProofs[view];
-                await page.waitForFunction(text => document.querySelector('#page').innerText.includes(text)
-                    || document.querySelector('.drawing')?.textContent.includes(text), proof, { timeout: 10000 })
-                    .catch(() => assert.fail(`${view} does not show "${proof}"`));
+for (const [sizeName, viewport, schemes] of [['1280x720', kWide, ['light', 'dark']], ['390x844', kPhone, ['dark', 'light']]])
+    test(`all views at ${sizeName}, light and dark`, async () => {
+        const { page, faults, close } = await open(browser, mock, { viewport, colorScheme: schemes[0] });
+        await waitForPicture(page);
+        for (const view of [...kAllViews, 'wall/2']) {
+            await show(page, view);
+            const proof = view === 'wall/2' ? 'per frame' : kProofs[view];
+            await page.waitForFunction(text => document.querySelector('#page').innerText.includes(text)
+                || document.querySelector('.drawing')?.textContent.includes(text), proof, { timeout: 10000 })
+                .catch(() => assert.fail(`${view} does not show "${proof}"`));
+            // Each view opens in one scheme, and changes to the other one while it is open.
+            for (const colorScheme of schemes) {
+                await page.emulateMedia({ colorScheme });
                 const { nameless, faint, overflow } = await page.evaluate(inspect);
-                assert.deepEqual(nameless, [], view);
-                assert.deepEqual(faint, [], view);
-                assert.ok(overflow <= 0, `${view} is ${overflow} pixels too wide`);
-                assert.ok((await page.title()).startsWith(view === 'wall/2' ? 'Wall' : view[0].toUpperCase() + view.slice(1)));
+                assert.deepEqual(nameless, [], `${view}, ${colorScheme}`);
+                assert.deepEqual(faint, [], `${view}, ${colorScheme}`);
+                assert.ok(overflow <= 0, `${view}, ${colorScheme} is ${overflow} pixels too wide`);
             }
-            assert.deepEqual(faults, []);
-            await context.close();
-        });
+            schemes.reverse();
+            assert.ok((await page.title()).startsWith(view === 'wall/2' ? 'Wall' : view[0].toUpperCase() + view.slice(1)));
+        }
+        assert.deepEqual(faults, []);
+        await close();
+    });
 
 test('states are words and shapes, not only colours', async () => {
-    const { page, context } = await open(browser, mock);
+    const { page, close } = await open(browser, mock);
     await page.waitForSelector('.segment.bad');
     await page.waitForSelector('.segment.warn');
     const lines = await page.$$eval('.segment', segments => segments.map(segment => ({
@@ -82,11 +86,11 @@ test('states are words and shapes, not only colours', async () => {
     assert.deepEqual(words, ['alive', 'alive', 'slow', 'lost']);
     assert.equal(new Set(lines.map(line => line.shape)).size, 3);
     lines.forEach((line, i) => assert.ok(line.label.includes(words[i]) && line.label.includes(`node ${i}`), line.label));
-    await context.close();
+    await close();
 });
 
 test('segments have the places of their millimetres', async () => {
-    const { page, context } = await open(browser, mock);
+    const { page, close } = await open(browser, mock);
     await page.waitForSelector('.segment');
     const places = await page.$$eval('.segment', segments => segments.map(segment => {
         const frame = segment.parentElement.getBoundingClientRect();
@@ -95,11 +99,11 @@ test('segments have the places of their millimetres', async () => {
     }));
     mock.scene.wall().canvases[0].segments.forEach(({ rectMm }, i) =>
         rectMm.forEach((value, k) => assert.ok(Math.abs(value - places[i][k]) < 2, `${i}: ${places[i]} instead of ${rectMm}`)));
-    await context.close();
+    await close();
 });
 
 test('the keyboard alone reaches views, segments and the drawer', async () => {
-    const { page, context } = await open(browser, mock);
+    const { page, close } = await open(browser, mock);
     await page.waitForSelector('.segment');
     const focused = () => page.evaluate(() => document.activeElement.getAttribute('aria-label') ?? document.activeElement.textContent);
     const seen = [];
@@ -117,11 +121,11 @@ test('the keyboard alone reaches views, segments and the drawer', async () => {
     await page.keyboard.press('Escape');
     await page.waitForSelector('.drawer', { state: 'detached' });
     assert.ok((await focused()).startsWith('lower.left'), 'the focus returns to the segment');
-    await context.close();
+    await close();
 });
 
 test('a new user finds the slow node, its reason, and its restart', async () => {
-    const { page, context } = await open(browser, mock);
+    const { page, close } = await open(browser, mock);
     await page.click('.segment.warn');
     await page.waitForSelector('.drawer .state.warn');
     const text = await page.innerText('.drawer');
@@ -135,5 +139,5 @@ test('a new user finds the slow node, its reason, and its restart', async () => 
     await until(() => mock.requests.some(({ op, args }) => op === 'restart-node' && args.node === 2), 'restart-node');
     await page.waitForSelector('.drawer .state:text("rejoining")');
     await until(async () => /slow|alive/.test(await page.innerText('.drawer .state')), 'the node is back');
-    await context.close();
+    await close();
 });

@@ -26,27 +26,24 @@ async function withMock(options, run) {
 }
 
 test('the first load has at most 150 kB, and shows a picture within 1.5 s', () => withMock({}, async mock => {
-    const warm = await open(browser, mock);
-    await waitForPicture(warm.page);
-    await warm.context.close();
     const times = [];
-    const before = slowdownOfMachine();
-    for (let round = 0; round < 3; ++round) {
+    let slowdown = 1;
+    // The best of four, on a processor of its own: other work that shares the machine takes its part of the time.
+    for (let round = 0; round < 4 && !(Math.min(...times) <= 1500 * slowdown); ++round) {
         mock.bytesOfFirstLoad = 0;
-        const { page, context } = await open(browser, mock);
+        const { page, close } = await open(browser, mock, { isFresh: true });
         await waitForPicture(page);
         times.push(await page.evaluate(() => performance.getEntriesByName('mural-first-picture')[0].startTime));
         assert.ok(mock.bytesOfFirstLoad > 0 && mock.bytesOfFirstLoad <= 150_000, `${mock.bytesOfFirstLoad} bytes`);
-        await context.close();
+        if (times.at(-1) > 1500) slowdown = Math.max(slowdown, slowdownOfMachine());
+        await close();
     }
-    // The best of three, on a processor of its own: other work that shares the machine takes its part of the time.
-    const slowdown = Math.max(before, slowdownOfMachine());
     console.log(`first load: ${mock.bytesOfFirstLoad} bytes, first picture after ${times.map(Math.round)} ms; other work: ${slowdown.toFixed(1)}`);
     assert.ok(Math.min(...times) <= 1500 * slowdown, `first pictures after ${times} ms, with other work ${slowdown}`);
 }));
 
 test('the token leaves the address and is only in the storage of the tab', () => withMock({}, async mock => {
-    const { page, context } = await open(browser, mock, { view: 'nodes' });
+    const { page, close } = await open(browser, mock, { view: 'nodes' });
     await page.waitForSelector('nav a[aria-current][href="#nodes"]');
     assert.equal(page.url(), `${mock.address}#nodes`);
     const stored = await page.evaluate(() => ({ session: { ...sessionStorage }, local: { ...localStorage }, cookie: document.cookie, entries: history.length }));
@@ -55,22 +52,22 @@ test('the token leaves the address and is only in the storage of the tab', () =>
     assert.equal(stored.cookie, '');
     await page.reload();
     await page.waitForSelector('nav a[aria-current][href="#nodes"]');
-    await context.close();
+    await close();
 }));
 
 test('an unknown token is refused in words, and another one can be entered', () => withMock({}, async mock => {
-    const { page, context, faults } = await open(browser, mock, { token: 'wrong' });
+    const { page, faults, close } = await open(browser, mock, { token: 'wrong' });
     await page.waitForSelector('.refused');
     assert.match(await page.innerText('.refused'), /unknown, expired or revoked/);
     await page.fill('.refused input', `${mock.address}#t=view-token`);
     await page.click('.refused button');
     await page.waitForSelector('nav a');
     assert.deepEqual(faults, []);
-    await context.close();
+    await close();
 }));
 
 test('a view-only link hides operations and input', () => withMock({}, async mock => {
-    const { page, context, faults } = await open(browser, mock, { token: 'view-token' });
+    const { page, faults, close } = await open(browser, mock, { token: 'view-token' });
     await waitForPicture(page);
     assert.deepEqual(await page.$$eval('nav a', links => links.map(link => link.textContent)),
         ['Wall', 'Use', 'Timeline', 'Balance', 'Nodes', 'Network', 'Program']);
@@ -84,11 +81,11 @@ test('a view-only link hides operations and input', () => withMock({}, async moc
     await page.waitForSelector('text=This link does not manage links.');
     assert.deepEqual(mock.requests.filter(({ op, args }) => args.topic === 'log' || op === 'links'), []);
     assert.deepEqual(faults, []);
-    await context.close();
+    await close();
 }));
 
 test('a denied operation is told, and nothing breaks', () => withMock({}, async mock => {
-    const { page, context, faults } = await open(browser, mock);
+    const { page, faults, close } = await open(browser, mock);
     await show(page, 'balance');
     await page.waitForSelector('button:text("Freeze")');
     for (const client of mock.clients) client.role = 'view';
@@ -96,11 +93,11 @@ test('a denied operation is told, and nothing breaks', () => withMock({}, async 
     await page.waitForSelector('.notices .error');
     assert.match(await page.innerText('.notices .error'), /requires the role operate/);
     assert.deepEqual(faults, []);
-    await context.close();
+    await close();
 }));
 
 test('after a loss the page says so, greys the last picture, and returns', () => withMock({}, async mock => {
-    const { page, context } = await open(browser, mock);
+    const { page, close } = await open(browser, mock);
     await waitForPicture(page);
     mock.isRefusing = true;
     mock.drop();
@@ -114,11 +111,11 @@ test('after a loss the page says so, greys the last picture, and returns', () =>
     await page.waitForSelector('.banner.bad', { state: 'detached', timeout: 10000 });
     const frame = await page.$eval('.picture', canvas => Number(canvas.dataset.frame));
     await page.waitForFunction(old => Number(document.querySelector('.picture').dataset.frame) > old, frame);
-    await context.close();
+    await close();
 }));
 
 test('pictures are requested only while somebody can see them, in the class of their size', () => withMock({}, async mock => {
-    const { page, context } = await open(browser, mock);
+    const { page, close } = await open(browser, mock);
     await waitForPicture(page);
     const previews = () => mock.requests.filter(({ op }) => op === 'preview').map(({ args }) => args.class);
     assert.equal(previews().at(-1), 'preview');
@@ -130,7 +127,7 @@ test('pictures are requested only while somebody can see them, in the class of t
     const size = await page.$eval('.use .picture', canvas => [canvas.width, canvas.height, canvas.clientWidth]);
     await until(async () => (await page.$eval('.use .picture', canvas => canvas.width)) === 1280, `1280 pixels instead of ${size}`);
     assert.ok(mock.acks > 0);
-    await context.close();
+    await close();
 }));
 
 // Replaces the decoder: `swallow` is the number of decoders that take units and return nothing.
@@ -160,27 +157,27 @@ function patchDecoder(swallow) {
 }
 
 test('H.264 is decoded by WebCodecs', () => withMock({ video: true }, async mock => {
-    const { page, context, faults } = await open(browser, mock, { view: 'use' });
+    const { page, faults, close } = await open(browser, mock, { view: 'use' });
     await page.waitForSelector('.use .toolbar:has-text("H.264")', { timeout: 10000 });
     await waitForPicture(page, '.use .picture');
     assert.deepEqual(faults, []);
-    await context.close();
+    await close();
 }));
 
 test('a decoder that returns nothing is replaced', () => withMock({ video: true }, async mock => {
-    const { page, context } = await open(browser, mock, { view: 'use', before: `(${patchDecoder})(1)` });
+    const { page, close } = await open(browser, mock, { view: 'use', before: `(${patchDecoder})(1)` });
     await page.waitForSelector('.use .toolbar:has-text("H.264")', { timeout: 10000 });
     const decoders = await page.evaluate(() => window.decoders.map(({ config, state }) => [config.hardwareAcceleration, state]));
     assert.deepEqual(decoders, [['no-preference', 'closed'], ['prefer-software', 'configured']]);
     assert.ok(mock.requests.filter(({ op, args }) => op === 'preview' && args.class === 'preview').length >= 2, 'a key frame is requested');
-    await context.close();
+    await close();
 }));
 
 test('after two silent decoders pictures continue as JPEG', () => withMock({ video: true }, async mock => {
-    const { page, context } = await open(browser, mock, { view: 'use', before: `(${patchDecoder})(9)` });
+    const { page, close } = await open(browser, mock, { view: 'use', before: `(${patchDecoder})(9)` });
     await page.waitForSelector('.use .toolbar:has-text("JPEG")', { timeout: 12000 });
     assert.equal(await page.evaluate(() => window.decoders.length), 2);
     assert.equal([...mock.clients].at(-1).hello.canUse.h264, false);
     await waitForPicture(page, '.use .picture');
-    await context.close();
+    await close();
 }));

@@ -68,8 +68,9 @@ export class Mock {
         for (const client of this.clients) client.web.terminate();
     }
 
-    step() {
-        this.scene.step();
+    // Passes time in the session, and sends what is due; without `seconds` the time of one frame.
+    step(seconds) {
+        this.scene.step(seconds);
         for (const client of this.clients) {
             this.sendTopics(client, performance.now());
             this.sendPictures(client);
