@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-from harness import display, programs
+from harness import display, length, programs
 
 # A warning appears exactly for windows shown with fewer bits than they have.
 EIGHT_BITS = "bits per channel; its picture is shown and saved with 8"
@@ -72,9 +72,9 @@ class Comparison:
             problems.append("the line about 8 bits " + ("is missing" if halves else "was printed"))
         return problems
 
-    def compare(self, depth, options):
+    def compare(self, depth, names, options):
         with display.PrivateDisplay("640x480x%d" % depth) as display_name:
-            for name in self.programs:
+            for name in names:
                 program = os.path.join(self.build, "tests", "programs", name)
                 status, native, messages = run([program], display_name, self.seconds)
                 if status != 0:
@@ -98,6 +98,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/release", help="the build folder")
     parser.add_argument("--depths", default="16,24,30", help="of the X screens")
+    parser.add_argument("--long-depths", help="depths of a long run, MURAL_LONG_TESTS=1; default those of --depths")
     parser.add_argument("--programs", default="window_colours,deep_framebuffers")
     parser.add_argument("--options", action="append", help="of one run; may be given several times")
     parser.add_argument("--lines", action="store_true", help="check the messages instead")
@@ -107,8 +108,11 @@ def main():
     if arguments.lines:
         comparison.lines()
     else:
-        for depth in arguments.depths.split(","):
-            comparison.compare(int(depth), arguments.options or ["--tiles 2x2 --display app --verify"])
+        depths = (length.LONG and arguments.long_depths or arguments.depths).split(",")
+        for depth in depths:
+            # Pixel buffers and framebuffer objects have the same formats on all screens.
+            names = [name for name in comparison.programs if name != "deep_framebuffers" or length.LONG or depth == depths[-1]]
+            comparison.compare(int(depth), names, arguments.options or ["--tiles %s --display app --verify" % ("2x2" if length.LONG else "2x1")])
     return 1 if comparison.failures else 0
 
 

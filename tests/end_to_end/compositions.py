@@ -6,6 +6,7 @@ compositions.py --build build/release --programs range_ties --counts 2,3,4,5 --s
 
 import os
 import sys
+import time
 
 import run_exact
 from harness import length
@@ -14,7 +15,25 @@ STRATEGIES = ("serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "st
 
 
 class Compositions(run_exact.Comparison):
-    """One program natively once, then divided among that number of nodes, with each strategy."""
+    """Each program natively once, then divided among that number of nodes, with each strategy. The nodes of a strategy
+    draw all programs, and end before those of the next one start."""
+
+    def check(self, name):
+        names = run_exact.programs.choose(self.arguments.programs)
+        if name != names[0]:
+            return  # compared with the first
+        native = {program: self.run(program, "reference") for program in names}
+        for program, run in native.items():
+            if run.status != 0 or not run.frames():
+                self.report(program, "reference", 0, "fails natively: status %s%s" % (run.status, run_exact.printed(run)))
+                return
+        for label, launcher in self.launchers().items():
+            for program, run in native.items():
+                began = time.monotonic()
+                wrong = self.compare(run, self.run_shared(program, label, launcher))
+                self.report(program, label, len(run.frames()), wrong, time.monotonic() - began)
+            if label in self.shared:
+                self.end_shared(label)
 
     def launchers(self):
         arguments = self.arguments

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs a real program with configuration files, all nodes on this machine, and checks the picture of the wall.
 
-  configurations.py --build build/release [--files a.eqc,b.eqc] [--shared] [--size 320x240]
+  configurations.py --build build/release [--files a.eqc,b.eqc] [--shared] [--part 1/2] [--size 320x240]
 
 Without --files: all of configs/. With --shared also the example files next to the tree (or in MURAL_SHARED), if
 present.
@@ -35,6 +35,10 @@ CANVAS_MEAN = 3
 # for values rounded four times: pixels and their weights, in 256ths; a part that is one pixel off differs by more
 MAX_SCALED_DIFFERENCE = 2
 SKIPPED = 77
+# Example files of which a short run shows the picture: each kind of decomposition, equalizer, eye and canvas once.
+# (tests/head/planning/config_plan_test.cpp plans all of them.)
+SHARED_KINDS = ("1-pipe.LG_CF3D", "2-node.DB", "2-node.tile", "2-pipe.stereo.passive", "2-window.DB.lb", "2-window.FBO", "2-window.wall.lb", "3-node.DB.ds",
+                "3-window.EYE.anaglyph", "3-window.curved", "4-window.DB.bs", "4-window.DPlex", "7-window.DB.PIXEL", "cave.HMD", "float", "own-coverage")
 
 
 def read_png(path):
@@ -304,6 +308,7 @@ def main():
     parser.add_argument("--build", default="build/release")
     parser.add_argument("--files", help="configuration files, separated by commas")
     parser.add_argument("--shared", action="store_true", help="also the example files beside the tree")
+    parser.add_argument("--part", default="1/1", metavar="K/N", help="only the Kth of N parts of the files")
     parser.add_argument("--size", default="321x243")
     parser.add_argument("--seconds", type=int, default=60, help="the longest that one run may take")
     a = parser.parse_args()
@@ -314,7 +319,10 @@ def main():
         if not shared:
             print("no example files; MURAL_SHARED says where shared is")
             return SKIPPED
-        files = length.some(shared)
+        chosen = [path for path in shared if length.LONG or os.path.basename(path)[:-len(".eqc")] in SHARED_KINDS]
+        files = chosen or shared
+    part, parts = (int(number) for number in a.part.split("/"))
+    files = files[part - 1::parts]
     failures = 0
     with display.PrivateDisplay() as name:
         run = Run(a, name)

@@ -16,10 +16,18 @@ import time
 from harness import cases, programs, session
 
 
-def kill_during_run(context, pattern, how_many, after_line, words):
+FEW_NODES = ("--tiles", "2x1", "--display", "none")
+
+
+def drawing(context, name, frames=5, tiles="2x1", **more):
+    """Starts a session with few nodes, because each costs more time than a short program."""
+    return context.drawing(name, frames, options=("--tiles", tiles, "--display", "none"), **more)
+
+
+def kill_during_run(context, pattern, how_many, after_line, words, tiles="2x1"):
     """Kills processes of the session while the program draws; the program must not be affected."""
     frames = 60
-    with context.drawing("long_run", frames) as run:
+    with drawing(context, "long_run", frames, tiles) as run:
         if after_line and not run.wait_for_line(after_line):
             return "the program did not reach \"%s\": %s" % (after_line, " | ".join(run.standard_error[-3:]))
         found = run.wait_for_processes(pattern, max(how_many, 1))
@@ -45,14 +53,14 @@ def node_killed_at_the_start(context):
 
 @cases.case
 def two_nodes_killed(context):
-    return kill_during_run(context, cases.NODE, 2, "frame 10", ["was lost:"])
+    return kill_during_run(context, cases.NODE, 2, "frame 10", ["was lost:"], "2x2")
 
 
 def range_lost(context, composition):
     """One of the nodes that divide draws is killed: its draws are missing, which one line reports, and no process waits
     for long."""
     with context.drawing("long_scene", 10 ** 6, options=("--display", "none", "--db", "4", "--composition", composition), environment={"SCENE_SHARES": "1"}) as run:
-        if not run.wait_for_line("frame 30 "):
+        if not run.wait_for_line("frame 20 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         found = run.wait_for_processes(cases.NODE, 4)
         if len(found) < 4:
@@ -62,7 +70,7 @@ def range_lost(context, composition):
         if not run.wait_for_line("a range of the picture is missing until its node rejoins: range 3"):
             return "no message about a missing range: " + " | ".join(run.standard_error[-3:])
         drawn = sum(line.startswith("frame ") for line in run.standard_output)
-        if not run.wait_for_line("frame %d " % (drawn + 200)):
+        if not run.wait_for_line("frame %d " % (drawn + 80)):
             return "no more frames: " + " | ".join(run.standard_error[-3:])
         if time.monotonic() - started > 60:
             return "it took %d s" % (time.monotonic() - started)
@@ -99,10 +107,10 @@ def head_killed_at_the_start(context):
 
 @cases.case
 def all_nodes_killed(context):
-    with context.drawing("long_run", 60) as run:
+    with drawing(context, "long_run", 60, "3x1") as run:
         if not run.wait_for_line("frame 20"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        cases.kill_all(run.wait_for_processes(cases.NODE, 4))
+        cases.kill_all(run.wait_for_processes(cases.NODE, 3))
         wrong = cases.check_end(run, 0, 60)
         if wrong is None and not cases.error_lines(run, ["was lost"]):
             wrong = "no message about the lost nodes"
@@ -136,7 +144,7 @@ def all_nodes_killed_while_frames_are_counted(context):
 def node_without_memory(context):
     """One node has no memory for a texture: the program receives the error once, as from its own driver."""
     frames = 60
-    with context.drawing("no_memory", frames) as run:
+    with drawing(context, "no_memory", frames) as run:
         if not run.wait_for_line("frame 3"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         node = run.wait_for_processes(cases.NODE, 1)[0]
@@ -158,7 +166,7 @@ def node_driver_reset(context):
     the status and through GL's error for it; for another program one line is printed."""
     for arguments, reported in (([], ["lost by status 0x8254, error 0x0507 behind it"]), (["--unasked"], [])):
         command = [context.program("context_lost"), "--frames", "60", "--size", "250x190"] + arguments
-        with context.run(command, environment={"MURAL_PLANT": "reset"}) as run:
+        with context.run(command, FEW_NODES, {"MURAL_PLANT": "reset"}) as run:
             wrong = cases.check_end(run, 0, 60)
             output = [line for line in run.standard_output if line.startswith("lost")]
             lines = cases.error_lines(run, ["did not enable reset notification"])
@@ -176,7 +184,7 @@ def node_driver_reset(context):
 @cases.case
 def node_stopped_and_continued(context):
     """A node that is only stopped for a while is not lost."""
-    with context.drawing("long_run", 60) as run:
+    with drawing(context, "long_run", 60) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         nodes = run.wait_for_processes(cases.NODE, 1)
@@ -192,7 +200,7 @@ def node_stopped_and_continued(context):
 @cases.case
 def node_stopped_for_good(context):
     """A hanging node is dropped, with one line; the others and the program continue."""
-    with context.drawing("long_run", 60) as run:
+    with drawing(context, "long_run", 60) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         node = run.wait_for_processes(cases.NODE, 1)[0]
@@ -206,7 +214,7 @@ def node_stopped_for_good(context):
 
 @cases.case
 def program_killed(context):
-    with context.drawing("long_run", 100000) as run:
+    with drawing(context, "long_run", 100000) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         cases.kill_all(run.processes(r"^\S*/long_run --frames"))  # not the launcher, whose command line also has the name
@@ -214,7 +222,7 @@ def program_killed(context):
 
 
 def interrupted(context, number):
-    with context.drawing("long_run", 100000) as run:
+    with drawing(context, "long_run", 100000) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(run.process.pid, number)
@@ -244,7 +252,7 @@ def launcher_killed(context):
 def ends(name):
     def check(context):
         wanted = programs.STATUS.get(name, 0)
-        with context.drawing(name) as run:
+        with drawing(context, name, tiles="2x2" if name == "exit_dirty" else "1x1") as run:
             return cases.check_end(run, wanted if wanted >= 0 else 128 - wanted)
     check.__name__ = "ends_" + name
     cases.case(check)
@@ -259,19 +267,19 @@ for ending in ("exit_dirty", "exit_quick", "exit_three", "exit_abort", "exit_seg
 def ends_launcher_script(context):
     """A script that starts the program in the background and waits for it."""
     script = "\"$0\" --frames 5 --size 250x190 & wait $!; exit 7"
-    with context.run(["sh", "-c", script, context.program("long_run")]) as run:
+    with context.run(["sh", "-c", script, context.program("long_run")], FEW_NODES) as run:
         return cases.check_end(run, 7, 5)
 
 
 @cases.case
 def ends_script_that_execs(context):
-    with context.run(["sh", "-c", "exec \"$0\" --frames 5 --size 250x190", context.program("exit_three")]) as run:
+    with context.run(["sh", "-c", "exec \"$0\" --frames 5 --size 250x190", context.program("exit_three")], FEW_NODES) as run:
         return cases.check_end(run, 3)
 
 
 @cases.case
 def ends_program_without_gl(context):
-    with context.run(["sh", "-c", "exit 5"]) as run:
+    with context.run(["sh", "-c", "exit 5"], FEW_NODES) as run:
         return cases.check_end(run, 5)
 
 

@@ -29,7 +29,7 @@ def check(build, way, names):
     native = run(program, names)
     if native[0] != 0:
         return "fails natively: " + native[2]
-    mural = [os.path.join(build, "bin", "mural"), "run", "--tiles", "2x2", "--display", "app", "--"]
+    mural = [os.path.join(build, "bin", "mural"), "run", "--tiles", "2x1", "--display", "app", "--"]
     status, output, errors = run(mural + program, names)
     if status != 0 or output != native[1]:
         return "status %d, %s instead of %s; output: %s" % (status, output.split(), native[1].split(), errors)

@@ -12,8 +12,8 @@ import tempfile
 
 from harness import cases, length, session
 
-FRAMES = 4
-OPTIONS = ["--tiles", "2x2", "--display", "none", "--verify"]
+FRAMES = 3
+OPTIONS = ["--tiles", "2x1", "--display", "none", "--verify"]
 
 
 def libraries(context, kind):
@@ -71,7 +71,7 @@ def reported(case_name, program, words, in_script=None, options=(), output=None,
             command = ["sh", "-c", 'LD_LIBRARY_PATH="$0" exec "$@"', libraries(context, in_script)] + command
         with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
             report_file = os.path.join(folder, "report.json")
-            fixed = ["--tiles", "2x2", "--display", "none", "--quiet", "--report", report_file]
+            fixed = ["--tiles", "1x1", "--display", "none", "--quiet", "--report", report_file]
             with context.run(command, fixed + list(options)) as run:
                 wrong = cases.check_end(run, status)
                 if wrong is not None:
@@ -104,13 +104,20 @@ reported("killed_early", None, ["sh ended before it created a GL context (signal
 reported("never_tried", None, ["sh made no GL calls through Mural"], shell="exit 0")
 
 
-def silent(program):
-    """Adds a case: Mural itself changes the pixels of the program's window, so no line is printed, and all frames are
-    on the wall."""
+SILENT_FRAMES = 5
+MORE_FRAMES = {"front_buffer": 3 * SILENT_FRAMES}  # programs that also show pictures without a swap
+
+
+def silent(case_name, *names):
+    """Adds a case: Mural itself changes the pixels of the programs' windows, so no line is printed, and all frames are
+    on the wall. The programs share a session; each of their processes watches its own windows."""
+    wanted = sum(MORE_FRAMES.get(name, SILENT_FRAMES) for name in names)
+
     def check(context):
+        command = ["sh", "-c", 'for program; do "$program" --frames %d --size 253x191 || exit; done' % SILENT_FRAMES, "sh"]
         with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
             report_file = os.path.join(folder, "report.json")
-            with context.run([context.program(program), "--frames", "5", "--size", "253x191"],
+            with context.run(command + [context.program(name) for name in names],
                              ["--tiles", "2x1", "--display", "none", "--quiet", "--report", report_file]) as run:
                 wrong = cases.check_end(run, 0)
                 if wrong is not None:
@@ -119,24 +126,47 @@ def silent(program):
                     return "output: " + " | ".join(run.standard_error)
             with open(report_file, encoding="utf-8") as file:
                 frames = json.load(file)["frames"]
-        return None if frames >= 5 else "only %d frames are on the wall" % frames
-    check.__name__ = "silent_" + program
+        return None if frames >= wanted else "%d frames instead of %d are on the wall" % (frames, wanted)
+    check.__name__ = "silent_" + case_name
     cases.case(check)
 
 
-for name in length.some(("immediate", "display_lists", "x_fonts", "feedback_select", "front_buffer", "pixels_draw", "pixels_read", "framebuffers",
-                         "single_buffered", "window_churn", "resize", "window_switch", "several_windows", "threads_windows",
-                         "x_pixmaps", "context_migration", "egl_desktop", "shared_contexts", "es2_scene")):
-    silent(name)
+SILENT = length.some(("immediate", "display_lists", "x_fonts", "feedback_select", "front_buffer", "pixels_draw", "pixels_read", "framebuffers",
+                      "single_buffered", "window_churn", "resize", "window_switch", "several_windows", "threads_windows",
+                      "x_pixmaps", "context_migration", "egl_desktop", "shared_contexts", "es2_scene"))
+if length.LONG:
+    for name in SILENT:
+        silent(name, name)
+else:
+    silent("in_turn", *SILENT)
+
+
+PRINTING = ("extension_strings", "gl_extensions", "kept_names", "memory_import")
+PRINTED = {}  # their lines through Mural
+
+
+def printed_by(context, program):
+    """Returns an error or None, and the program's lines through Mural. All these programs share a session."""
+    if not PRINTED:
+        command = ["sh", "-c", 'for program; do "$program" || exit; echo "end of $program"; done', "sh"] + [context.program(name) for name in PRINTING]
+        with context.run(command, ["--display", "none", "--quiet"]) as run:
+            wrong = cases.check_end(run, 0)
+            if wrong is not None:
+                return wrong, []
+        lines = []
+        for line in run.standard_output:
+            if line.startswith("end of "):
+                PRINTED[os.path.basename(line)] = lines
+                lines = []
+            else:
+                lines.append(line)
+    return None, PRINTED[program]
 
 
 def printed_is(context, program, expected):
     """Returns an error if the program's one line through Mural is not as expected."""
-    with context.run([context.program(program)], ["--display", "none", "--quiet"]) as run:
-        wrong = cases.check_end(run, 0)
-        if wrong is None and run.standard_output != [expected]:
-            wrong = "the program printed: " + " | ".join(run.standard_output)
-        return wrong
+    wrong, lines = printed_by(context, program)
+    return wrong if wrong is not None or lines == [expected] else "the program printed: " + " | ".join(lines)
 
 
 @cases.case
@@ -148,15 +178,15 @@ def reported_extensions_of_all_machines(context):
 @cases.case
 def reported_extensions_in_order(context):
     """Checks that GL_EXTENSIONS keeps the driver's order: old programs read only the first kilobytes of the text."""
-    lists = []
-    for run in (session.Session([context.program("gl_extensions")], context.display),
-                context.run([context.program("gl_extensions")], ["--display", "none", "--quiet"])):
-        with run:
-            wrong = cases.check_end(run, 0)
-            if wrong is not None:
-                return wrong
-            lists.append([line.split() for line in run.standard_output])
-    native, reported = lists
+    with session.Session([context.program("gl_extensions")], context.display) as run:
+        wrong = cases.check_end(run, 0)
+        if wrong is not None:
+            return wrong
+        natively = list(run.standard_output)
+    wrong, through = printed_by(context, "gl_extensions")
+    if wrong is not None:
+        return wrong
+    native, reported = ([line.split() for line in lines] for lines in (natively, through))
     if [line[0] for line in reported] != ["text", "names", "beyond"] or reported[2] != native[2]:
         return "the program printed: %s, natively: %s" % (reported, native)
     for own, drivers in zip(reported[:2], native[:2]):

@@ -14,74 +14,21 @@ import sys
 import tempfile
 import time
 
-from harness import cases, length, pictures, programs
+from harness import cases, length, pictures
+from harness.wall_pictures import FRAMES, SIZE, case, differing, first_wrong, in_session, native, of_programs, through, through_all
 
-FRAMES = 4
-SIZE = (253, 191)
-WAYS = ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "tessellation")
 EYE, FOCUS = 0.3, 6.0
-
-
-def case(function):
-    """Registers a case, and prints its result after its measurements."""
-    def measured(context):
-        notes = []
-        wrong = function(context, notes)
-        if notes:
-            print("%-32s %s" % (function.__name__, "; ".join(notes)))
-        return wrong
-    measured.__name__ = function.__name__
-    cases.case(measured)
-    return function
-
-
-def native(context, program, arguments=(), size=SIZE, frames=FRAMES):
-    """Returns the pictures of all frames of the first window, without Mural."""
-    with tempfile.TemporaryDirectory(prefix="mural-passes.") as folder:
-        run = programs.run_program(context.build, program, os.path.join(folder, "native"), context.display,
-                                   "%dx%d" % size, frames, arguments=arguments)
-        if run.status != 0:
-            raise SystemExit("%s fails natively: %s" % (program, run.output))
-        return [pictures.read_ppm(path) for name, path in sorted(run.frames().items()) if name.startswith("w0/")]
-
-
-def through(context, options, program, arguments=(), size=SIZE, frames=FRAMES):
-    """Returns the pictures that the head has combined, in the order of --out."""
-    with tempfile.TemporaryDirectory(prefix="mural-passes.") as folder:
-        command = [context.program(program), "--frames", str(frames), "--size", "%dx%d" % size] + list(arguments)
-        with context.run(command, ["--display", "none", "--out", folder] + list(options)) as run:
-            wrong = cases.check_end(run, 0)
-            if wrong is not None:
-                raise AssertionError(wrong)
-        return [pictures.read_png(os.path.join(folder, name)) for name in sorted(os.listdir(folder))]
-
-
-def differing(expected, got):
-    """Returns None, or the number of differing pixels and the first position."""
-    if len(expected) != len(got):
-        return "%d pictures instead of %d" % (len(got), len(expected))
-    difference = pictures.Difference()
-    for number, (first, second) in enumerate(zip(expected, got)):
-        difference.add_pictures(first, second, "frame %d" % number)
-    return None if difference.pixels == 0 else "%d pixels differ, largest %d, %s" % (
-        difference.pixels, difference.largest, difference.place)
-
-
-def first_wrong(results):
-    """Returns the first error of {name: None or error}."""
-    return next(("%s: %s" % item for item in results.items() if item[1] is not None), None)
 
 
 # ---- turns
 
-def by_turns(context, program, turns, frames=9):
-    return differing(native(context, program, frames=frames), through(context, ["--dplex", str(turns)], program, frames=frames))
-
-
 @case
 def dplex_pictures_are_all_there(context, notes):
     """Every frame arrives, in order, from programs that clear, that do not, and that copy their window."""
-    return first_wrong({program: by_turns(context, program, 3) for program in length.some(("immediate", "es2_scene", "frames_kept", "core_arrays", "pixels_read"))})
+    names, frames = ("immediate", "es2_scene", "frames_kept", "core_arrays", "pixels_read"), 9
+    plain = [native(context, name, frames=frames) for name in names]
+    drawn = through_all(context, ["--dplex", "3"], of_programs(names), frames=frames, counts=list(map(len, plain)))
+    return first_wrong({name: differing(*both) for name, *both in zip(names, plain, drawn)})
 
 
 @case
@@ -148,25 +95,47 @@ def subpixel_is_the_mean(context, notes):
         ("pass_scene_es2", [], 2, SIZE), ("pass_scene_es2", [], 4, (250, 190))])
 
 
+MVP = ("pass_scene", ("--draw", "mvp"))
+COPIED = of_programs(("copied_scene", "pixels_read", "es2_scene", "copied_samples"))
+# undivided, and divided by tiles
+DIVIDED = {"samples": (["--subpixel", "2"], ["--subpixel", "2", "--tiles", "2x1", "--local-nodes", "4"]),
+           "eyes": (["--stereo", "anaglyph"], ["--stereo", "anaglyph", "--tiles", "1x2", "--local-nodes", "4"])}
+
+
+def undivided_and_divided(context, scene, way):
+    """Compares a scene of a pass with the same scene drawn by tiles. Cases share both sessions."""
+    scenes = [copied for copied, other in length.pairs(COPIED, DIVIDED) if other == way] + ([MVP] if way == "samples" else [])
+    return differing(*(in_session(context, options, scene, scenes) for options in DIVIDED[way]))
+
+
 @case
 def passes_copy_their_own_pixels(context, notes):
     """Tiles of an eye or a sample that is copied: pixels from other nodes belong to another pass."""
-    ways = {"samples": (["--subpixel", "2"], ["--subpixel", "2", "--tiles", "2x1", "--local-nodes", "4"]),
-            "eyes": (["--stereo", "anaglyph"], ["--stereo", "anaglyph", "--tiles", "1x2", "--local-nodes", "4"])}
-    return first_wrong({"%s, %s" % (program, name): differing(through(context, whole, program), through(context, tiles, program))
-                        for program, (name, (whole, tiles)) in length.pairs(("copied_scene", "pixels_read", "es2_scene", "copied_samples"), ways.items())})
+    return first_wrong({"%s, %s" % (scene[0], way): undivided_and_divided(context, scene, way) for scene, way in length.pairs(COPIED, DIVIDED)})
 
 
 # ---- pixels of a kernel
 
+POLYGONS = length.some((("pass_scene", ("--draw", "mvp"), "2x1"), ("pass_scene", ("--draw", "fixed"), "3"), ("pass_scene_es2", (), "2x2"),
+                        ("pass_scene", ("--draw", "mvp"), "2x2"), ("pass_scene", ("--draw", "geometry"), "3x2")))
+# with the least PSNR
+FRAGMENTS = (("frag_coord", "2x1", 50), ("frag_coord", "3x2", 50), ("fragment_places", "2x1", math.inf), ("fragment_places", "3x2", math.inf), ("textures_modern", "3x2", 60))
+COPIES = [(*scene, kernel) for scene, kernel in length.pairs((("pixels_read", ()), ("es2_scene", ()), ("pass_scene", ("--draw", "blit"))), ("2x1", "3x2"))]
+LEVELS = [(*scene, kernel) for scene, kernel in length.pairs((("pass_scene", ("--draw", "textured")), ("pass_scene_es2", ("--draw", "textured"))), ("2x1", "3x2"))]
+
+
+def by_kernel(context, program, arguments, kernel):
+    """Returns the pictures of a scene with a kernel. One session draws all scenes with that kernel."""
+    scenes = POLYGONS + [(name, (), other) for name, other, _ in FRAGMENTS] + COPIES + LEVELS
+    return in_session(context, ["--pixel", kernel], (program, arguments), [tuple(scene) for *scene, other in scenes if other == kernel])
+
+
 @case
 def pixel_polygons_are_near(context, notes):
     wrong = None
-    for program, arguments, kernel in length.some((
-            ("pass_scene", ["--draw", "mvp"], "2x1"), ("pass_scene", ["--draw", "fixed"], "3"), ("pass_scene_es2", [], "2x2"),
-            ("pass_scene", ["--draw", "mvp"], "2x2"), ("pass_scene", ["--draw", "geometry"], "3x2"))):
+    for program, arguments, kernel in POLYGONS:
         plain = native(context, program, arguments)
-        got = through(context, ["--pixel", kernel], program, arguments)
+        got = by_kernel(context, program, arguments, kernel)
         worst = min(pictures.decibels(a, b) for a, b in zip(plain, got))
         notes.append("%s %s: %.1f dB" % (arguments[-1] if arguments else program, kernel, worst))
         if len(got) != len(plain) or worst < 40:
@@ -181,8 +150,8 @@ def pixel_fragments_have_wall_positions(context, notes):
     """Drawing that uses only gl_FragCoord equals the native one; derivatives and texture levels nearly. In assembly,
     too."""
     wrong = None
-    for program, kernel, minimum in (("frag_coord", "2x1", 50), ("frag_coord", "3x2", 50), ("fragment_places", "2x1", math.inf), ("fragment_places", "3x2", math.inf), ("textures_modern", "3x2", 60)):
-        plain, got = native(context, program), through(context, ["--pixel", kernel], program)
+    for program, kernel, minimum in FRAGMENTS:
+        plain, got = native(context, program), by_kernel(context, program, (), kernel)
         worst = min(pictures.decibels(a, b) for a, b in zip(plain, got))
         notes.append("%s %s: %.1f dB" % (program, kernel, worst))
         if len(got) != len(plain) or worst < minimum:
@@ -190,20 +159,21 @@ def pixel_fragments_have_wall_positions(context, notes):
     return wrong
 
 
+def exact_by_kernel(context, scenes):
+    return first_wrong({"%s %s" % (program, kernel): differing(native(context, program, arguments), by_kernel(context, program, arguments, kernel))
+                        for program, arguments, kernel in scenes})
+
+
 @case
 def pixel_is_exact_where_pixels_are_copied(context, notes):
-    programs_of = (("pixels_read", []), ("es2_scene", []), ("pass_scene", ["--draw", "blit"]))
-    return first_wrong({"%s %s" % (program, kernel): differing(native(context, program, arguments), through(context, ["--pixel", kernel], program, arguments))
-                        for (program, arguments), kernel in length.pairs(programs_of, ("2x1", "3x2"))})
+    return exact_by_kernel(context, COPIES)
 
 
 @case
 def pixel_is_exact_with_explicit_levels(context, notes):
     """The fixed function and OpenGL ES select texture levels by the drawn pixels. Such programs draw all pixels, from
     the next frame on."""
-    scenes = (("pass_scene", ["--draw", "textured"]), ("pass_scene_es2", ["--draw", "textured"]))
-    wrong = first_wrong({"%s %s" % (program, kernel): differing(native(context, program, arguments), through(context, ["--pixel", kernel], program, arguments))
-                         for (program, arguments), kernel in length.pairs(scenes, ("2x1", "3x2"))})
+    wrong = exact_by_kernel(context, LEVELS)
     levels, plain = (native(context, "pass_scene", ["--draw", way]) for way in ("textured", "fixed"))
     return wrong or (None if differing(levels, plain) else "no level was looked up")
 
@@ -215,10 +185,23 @@ def overlay(picture):
     return [row[:3 * (picture.width // 2 - 1)] for row in picture.rows[(picture.height + 1) // 2 + 1:]]
 
 
+BASE = ["--eye-base", str(2 * EYE), "--focus", str(FOCUS)]
+FIXED_AND_ES = [("pass_scene", ("--draw", way)) for way in ("fixed", "legacy")] + [("pass_scene_es2", ())]
+BY_SHADERS = [("pass_scene", ("--draw", way)) for way in ("matrices", "mvp", "block", "geometry", "tessellation")]
+ELSEWHERE = [("pass_scene", ("--draw", way)) for way in ("framebuffer", "blit")]
+
+
+def of_eye(context, program, arguments, mode):
+    """Returns the pictures of a scene for the left or the right eye. One session draws all scenes for that eye."""
+    seen_by = [MVP]
+    for scenes in (FIXED_AND_ES, BY_SHADERS, ELSEWHERE):
+        seen_by += [scene for scene, eye in length.pairs(scenes, (-EYE, EYE)) if mode == ("left" if eye < 0 else "right") and scene not in seen_by]
+    return in_session(context, ["--stereo", mode] + BASE, (program, arguments), seen_by)
+
+
 def seen(context, program, arguments, eye):
     """Returns the distance of Mural's picture for an eye from the native one, and whether its overlay is unchanged."""
-    base = ["--eye-base", str(2 * EYE), "--focus", str(FOCUS)]
-    got = through(context, ["--stereo", "left" if eye < 0 else "right"] + base, program, arguments)
+    got = of_eye(context, program, arguments, "left" if eye < 0 else "right")
     wanted = native(context, program, list(arguments) + ["--eye", "%g,%g" % (eye, FOCUS)])
     plain = native(context, program, arguments)
     if len(got) != len(wanted):
@@ -241,26 +224,19 @@ def seen_ways(context, notes, scenes):
 
 @case
 def stereo_eyes_fixed_and_es(context, notes):
-    return seen_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("fixed", "legacy")] + [("pass_scene_es2", [])])
+    return seen_ways(context, notes, FIXED_AND_ES)
 
 
 @case
 def scenes_drawn_elsewhere(context, notes):
     """A scene in a framebuffer object that is then shown: the scene moves, but not the quad or blit, nor its shadow
     map."""
-    scenes = [("pass_scene", ["--draw", way]) for way in ("framebuffer", "blit")]
-    return seen_ways(context, notes, scenes) or sampled_ways(context, notes, [scene + (2, SIZE) for scene in scenes])
+    return seen_ways(context, notes, ELSEWHERE) or sampled_ways(context, notes, [scene + (2, SIZE) for scene in ELSEWHERE])
 
 
 @case
 def stereo_eyes_by_shaders(context, notes):
-    return seen_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("matrices", "mvp", "block", "geometry", "tessellation")])
-
-
-def eyes(context):
-    base = ["--eye-base", str(2 * EYE), "--focus", str(FOCUS)]
-    show = lambda mode, *more: through(context, ["--stereo", mode] + base + list(more), "pass_scene", ["--draw", "mvp"])
-    return show, show("left"), show("right")
+    return seen_ways(context, notes, BY_SHADERS)
 
 
 def anaglyph(left, right):
@@ -279,7 +255,8 @@ def side_by_side(left, right):
 
 @case
 def stereo_pictures_are_put_together(context, notes):
-    show, left, right = eyes(context)
+    left, right = (of_eye(context, *MVP, mode) for mode in ("left", "right"))
+    show = lambda mode, *more: through(context, ["--stereo", mode] + BASE + list(more), *MVP)
     turned = show("anaglyph", "--dplex", "2")
     both = [anaglyph(a, b) for a, b in zip(left, right)]
     return first_wrong({"anaglyph": differing(both, show("anaglyph")), "with dplex": differing(both, turned),
@@ -319,21 +296,21 @@ SHARED_WALL = """
 WALLS = ((1.2, -0.7, 1.3, 90), (1.3, -1.2, 0.8, 0), (0.8, -1.3, 0.7, -90))
 
 
-def in_room(context, program, arguments, size, compounds=""):
+def in_room(context, scenes, size, compounds=""):
+    """Returns the pictures of each scene; one session draws all of them."""
     words = {"w": size[0], "h": size[1]}
     with tempfile.TemporaryDirectory(prefix="mural-room.") as folder:
         path = os.path.join(folder, "room.eqc")
         with open(path, "w", encoding="ascii") as file:
             file.write(ROOM % dict(words, compounds=compounds % words))
-        return through(context, ["--config", path], program, arguments, (3 * size[0], size[1]))
+        return through_all(context, ["--config", path], scenes, (3 * size[0], size[1]))
 
 
 def room_ways(context, notes, scenes, size=(160, 120)):
     """Compares every wall of a room with a native picture with that wall's frustum."""
     wrong = None
-    for program, arguments in length.some(scenes):
-        arguments = list(arguments) + ["--around"]
-        got = in_room(context, program, arguments, size)
+    scenes = [(program, list(arguments) + ["--around"]) for program, arguments in length.some(scenes)]
+    for (program, arguments), got in zip(scenes, in_room(context, scenes, size)):
         worst, apart = math.inf, math.inf
         # This scene draws the light's view over its upper right corner.
         has_shadow = "framebuffer" in arguments
@@ -398,16 +375,15 @@ def room_walls_have_windows(context, notes):
 @case
 def room_walls_are_shared(context, notes):
     """A wall that two nodes draw has no seam."""
-    arguments, size = ["--draw", "mvp", "--around"], (160, 120)
-    return differing(in_room(context, "pass_scene", arguments, size), in_room(context, "pass_scene", arguments, size, SHARED_WALL))
+    scenes, size = [("pass_scene", ["--draw", "mvp", "--around"])], (160, 120)
+    return differing(in_room(context, scenes, size)[0], in_room(context, scenes, size, SHARED_WALL)[0])
 
 
 # ---- several at once
 
 @case
 def subpixel_with_tiles(context, notes):
-    plain, tiled = (through(context, ["--subpixel", "2"] + more, "pass_scene", ["--draw", "mvp"]) for more in ([], ["--tiles", "2x1", "--local-nodes", "4"]))
-    return differing(plain, tiled)
+    return undivided_and_divided(context, MVP, "samples")
 
 
 def window_pixels(context, titles, seconds):

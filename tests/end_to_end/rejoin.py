@@ -5,6 +5,7 @@ exact, the other nodes' parts always are, and no process waits for long.
   rejoin.py --build build/release [--cases one,several] [--list]
 """
 
+import glob
 import json
 import os
 import re
@@ -14,15 +15,18 @@ import sys
 import tempfile
 import time
 
-from harness import cases, pictures, programs, session
+from harness import cases, length, pictures, programs, session
 
 case = cases.case
 WIDTH, HEIGHT = 252, 190
 BACK = "rejoined "
+# Pause in each frame. A rejoin takes the same time with longer ones, and there are fewer pictures to save and compare.
+PAUSE_US = "15000" if length.LONG else "45000"
 PROGRAM = "long_scene"
 # limit of frames per run: on a busy machine a rejoin takes seconds, and a run without an end file takes too long
 MAX_FRAMES = 6000
-TAIL = 60  # frames drawn after the awaited event of a case
+START = 25  # frames before the first loss
+TAIL = 40  # frames drawn after the awaited event of a case
 EXACT = 20  # the last frames of these, which must not differ
 
 
@@ -47,8 +51,9 @@ def native_pictures(context, folder, frames, environment):
     return NATIVE[key][:frames]
 
 
-def saved_pictures(folder):
-    return [pictures.read_png(os.path.join(folder, name)) for name in sorted(os.listdir(folder))]
+def saved_pictures(folder, last=0):
+    """Returns all pictures, or only the last ones."""
+    return [pictures.read_png(os.path.join(folder, name)) for name in sorted(os.listdir(folder))[-last:]]
 
 
 class Watch:
@@ -59,7 +64,7 @@ class Watch:
         self.context, self.frames, self.tiles = context, frames, tiles
         self.every = every  # frames between two saved pictures
         self.beside = beside  # the same program also runs a second time, in a smaller window
-        self.environment = {"SCENE_PAUSE_US": "15000"}
+        self.environment = {"SCENE_PAUSE_US": PAUSE_US}
         self.environment.update(environment or {})
         self.folder = tempfile.TemporaryDirectory(prefix="mural-rejoin.")
         self.out = os.path.join(self.folder.name, "out")
@@ -154,7 +159,7 @@ def judged(differing, spans, tail, every=1):
     return None
 
 
-def kill_and_compare(context, frames=MAX_FRAMES, options=(), environment=None, victims=(1,), at=60, tiles="2x1", missing_columns=None, where="local", every=1, maximum=None):
+def kill_and_compare(context, frames=MAX_FRAMES, options=(), environment=None, victims=(1,), at=START, tiles="2x1", missing_columns=None, where="local", every=1, maximum=None):
     """Kills the nodes one after the other, each after the rejoin of the previous one."""
     watch = Watch(context, frames, options, environment, tiles, every)
     half = WIDTH // 2
@@ -227,10 +232,10 @@ def with_delta(context):
 @case
 def with_culling(context):
     """The returning node knows no contents of buffers yet. The audit ends the run with status 1 for a fault."""
-    return kill_and_compare(context, options=("--culling", "audit"), environment={"SCENE_LISTS": "1"}, victims=(1, 0))
+    return kill_and_compare(context, options=("--culling", "audit"), environment={"SCENE_LISTS": "1"}, victims=(1, 0) if length.LONG else (0,))
 
 
-@case
+@cases.long_case
 def by_tcp(context):
     """Nodes as on other machines: started again with the same command, connected again by TCP."""
     return kill_and_compare(context, options=("--nodes", "localhost,localhost", "--stream", "tcp"), where="localhost")
@@ -259,7 +264,7 @@ def waiting_node(context):
                         return "the daemon ended"
                 watch = Watch(context, options=("--nodes", "%s,%s" % (host, host), "--launch", "%s call --secret %s" % (context.mural, secret)))
                 with watch.start() as run:
-                    if not run.wait_for_line("frame 60 "):
+                    if not run.wait_for_line("frame %d " % START):
                         return "the program did not start: " + " | ".join(run.standard_error[-3:])
                     frame = latest_frame(run)
                     os.kill(children_of(waiting.pid)[1], signal.SIGKILL)
@@ -274,13 +279,12 @@ def waiting_node(context):
 
 def children_of(parent):
     found = []
-    for entry in os.listdir("/proc"):
+    for path in glob.glob("/proc/%d/task/*/children" % parent):
         try:
-            with open("/proc/%d/stat" % int(entry), encoding="ascii", errors="replace") as file:
-                if int(file.read().rsplit(")", 1)[1].split()[1]) == parent:
-                    found.append(int(entry))
-        except (OSError, ValueError):
-            continue
+            with open(path, encoding="ascii") as file:
+                found += map(int, file.read().split())
+        except OSError:
+            continue  # the thread has ended meanwhile
     return sorted(found)
 
 
@@ -289,7 +293,7 @@ def wall_windows(context):
     """Nodes that show their tiles themselves: the returning node opens its window again, and leaves nothing behind."""
     watch = Watch(context, display="windows")
     with watch.start() as run:
-        if not run.wait_for_line("frame 60 "):
+        if not run.wait_for_line("frame %d " % START):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(first_nodes(run)[1], signal.SIGKILL)
         if not run.wait_for_line(BACK, 30):
@@ -308,7 +312,8 @@ def in_turns(context):
 @case
 def all_that_take_turns(context):
     """All time-multiplexed nodes are lost: the period starts again."""
-    return kill_and_compare_ends(context, ("--dplex", "3"), "1x1", (0, 1, 2))
+    nodes = 3 if length.LONG else 2
+    return kill_and_compare_ends(context, ("--dplex", str(nodes)), "1x1", range(nodes))
 
 
 @case
@@ -324,14 +329,14 @@ def turns_over_earlier_frames(context):
 @case
 def tiles_of_a_queue(context):
     """The other node takes the tiles at its next full clear, long before the rejoin."""
-    return kill_and_compare(context, tiles="queue 32x32", missing_columns=range(WIDTH), victims=(1, 0), maximum=24)
+    return kill_and_compare(context, tiles="queue 32x32", missing_columns=range(WIDTH), victims=(1, 0) if length.LONG else (1,), maximum=24)
 
 
 @case
 def areas_that_are_balanced(context):
     """The other node takes the whole picture at its next full clear."""
-    return (kill_and_compare(context, tiles="balance auto", missing_columns=range(WIDTH), victims=(1, 0), maximum=24) or
-            kill_and_compare(context, tiles="balance load", missing_columns=range(WIDTH), victims=(0, 1), maximum=24))
+    return (kill_and_compare(context, tiles="balance auto", missing_columns=range(WIDTH), victims=(1, 0) if length.LONG else (1,), maximum=24) or
+            kill_and_compare(context, tiles="balance load", missing_columns=range(WIDTH), victims=(0, 1) if length.LONG else (0,), maximum=24))
 
 
 @cases.long_case
@@ -370,11 +375,11 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
     watch = Watch(context, frames, options, dict(environment or {}, SCENE_SHARES="1"), tiles, beside=beside)
     whole = []  # spans of frames that must be exact: first, end
     with watch.start() as run:
-        if not run.wait_for_line("frame 40 "):
+        if not run.wait_for_line("frame %d " % START):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         run.first_nodes = nodes_of(run, nodes)
         begin = 0
-        for victims in rounds:
+        for done, victims in enumerate(rounds):
             pids = [node_pid(run, number, where) for number in victims]
             whole.append((begin, latest_frame(run) - UNDER_WAY))
             for pid in pids:
@@ -383,7 +388,7 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
                 if not run.wait_for_line(BACK, 40):
                     return "%s did not rejoin: %s" % (victims, " | ".join(run.standard_error[-8:]))
             begin = latest_frame(run) + UNDER_WAY
-            while latest_frame(run) < begin + 2 * UNDER_WAY and run.process.poll() is None:
+            while done + 1 < len(rounds) and latest_frame(run) < begin + 2 * UNDER_WAY and run.process.poll() is None:
                 time.sleep(0.01)
         watch.enough(run)
         wrong = watch.end(run)
@@ -391,7 +396,7 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
             return wrong
         frames = watch.drawn
         whole.append((begin, frames))
-        longest = max(frame_times(run)[40:])
+        longest = max(frame_times(run)[START:])
         report = watch.report()["nodes"]
         saved = saved_pictures(watch.out)
         native = {tuple(picture.rows): frame for frame, picture in enumerate(watch.native())}
@@ -432,16 +437,18 @@ def by_ranges(strategy, ranks):
     return ("--db", str(ranks), "--composition", strategy)
 
 
-def ranges_case(strategy):
+def ranges_case(strategy, other):
+    rounds = ((2,), (1,), (0,)) if length.LONG else ((other,), (0,))  # 0: the collector
+
     def check(context):
-        return ranges_come_back(context, ((2,), (1,), (0,)), 3, by_ranges(strategy, 3))
+        return ranges_come_back(context, rounds, 3, by_ranges(strategy, 3))
     check.__name__ = "ranges_" + strategy.replace("-", "_")
-    check.__doc__ = "Sort-last nodes rejoin, each of them, with " + strategy
+    check.__doc__ = "Sort-last nodes rejoin, the collector and others, with " + strategy
     return case(check)
 
 
-for name in STRATEGIES:
-    ranges_case(name)
+for index, name in enumerate(STRATEGIES):
+    ranges_case(name, 2 - index % 2)
 
 
 @case
@@ -449,13 +456,13 @@ def ranges_several_at_once(context):
     """Two of four including the collector, then all but the collector, then all: nodes that rejoin later connect to
     earlier ones."""
     return (ranges_come_back(context, ((0, 2), (1, 2, 3)), 4, by_ranges("direct-send", 4)) or
-            ranges_come_back(context, ((1, 2), (0, 1, 2)), 3, by_ranges("serial", 3)))
+            ranges_come_back(context, ((1, 2), (0, 1, 2)) if length.LONG else ((0, 1, 2),), 3, by_ranges("serial", 3)))
 
 
 @case
 def ranges_of_tiles(context):
     """Two pictures of two nodes each: a loss in one does not affect the other."""
-    return ranges_come_back(context, ((3,), (2,), (1, 2)), 4, by_ranges("binary-swap", 2) + ("--local-nodes", "4"), tiles="2x1")
+    return ranges_come_back(context, ((3,), (2,), (1, 2)) if length.LONG else ((3,), (1, 2)), 4, by_ranges("binary-swap", 2) + ("--local-nodes", "4"), tiles="2x1")
 
 
 @cases.long_case
@@ -483,13 +490,13 @@ def ranges_by_multicast(context):
 @case
 def ranges_of_two_programs(context):
     """Pictures of two programs' windows are combined one after the other, in the order in which their packets arrive."""
-    return ranges_come_back(context, ((1,), (0,)), 3, by_ranges("2-3-swap", 3), beside=True)
+    return ranges_come_back(context, ((1,), (0,)) if length.LONG else ((0,),), 3, by_ranges("2-3-swap", 3), beside=True)
 
 
 @case
 def ranges_that_are_busy(context):
     """Without pauses: all processes wait for the nodes."""
-    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("streaming", 2), environment={"SCENE_PAUSE_US": "0"}, frames=5 * MAX_FRAMES)
+    return ranges_come_back(context, ((1,), (0,)) if length.LONG else ((0,),), 2, by_ranges("streaming", 2), environment={"SCENE_PAUSE_US": "0"}, frames=5 * MAX_FRAMES)
 
 
 @case
@@ -497,13 +504,13 @@ def chunks_come_back(context):
     """Nodes that take draws from a queue, and nodes that receive random ones, which change with each frame."""
     options = by_ranges("direct-send", 3) + ("--chunk-queue", "60")
     return (ranges_come_back(context, ((1,), (0,)), 3, options) or
-            ranges_come_back(context, ((2,), (1, 2)), 3, options, environment={"MURAL_PLANT": "shares"}))
+            ranges_come_back(context, ((2,), (1, 2)) if length.LONG else ((1, 2),), 3, options, environment={"MURAL_PLANT": "shares"}))
 
 
 @case
 def chunks_that_are_balanced(context):
     """Ranges that equalizers move."""
-    return ranges_come_back(context, ((1,), (0, 2)), 3, by_ranges("direct-send", 3) + ("--balance", "auto"))
+    return ranges_come_back(context, ((1,), (0, 2)) if length.LONG else ((0, 2),), 3, by_ranges("direct-send", 3) + ("--balance", "auto"))
 
 
 @case
@@ -511,18 +518,18 @@ def chunks_of_a_lost_node(context):
     """A node that does not rejoin: the others take its chunks, and from then on nothing is missing."""
     watch = Watch(context, MAX_FRAMES, by_ranges("binary-swap", 3) + ("--chunk-queue", "60", "--restart-nodes", "0"), {"SCENE_SHARES": "1"}, tiles="1x1")
     with watch.start() as run:
-        if not run.wait_for_line("frame 40 "):
+        if not run.wait_for_line("frame %d " % START):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(node_pid(run, 1), signal.SIGKILL)
         if not run.wait_for_line("other nodes take its draws", 20):
             return "no message about its chunks: " + " | ".join(run.standard_error[-4:])
         begin = latest_frame(run) + UNDER_WAY
-        watch.enough(run, UNDER_WAY + 60)
+        watch.enough(run, UNDER_WAY + TAIL)
         wrong = watch.end(run)
         if wrong is not None:
             return wrong
         behind = [columns_that_differ(a, b) for a, b in zip(watch.native(), saved_pictures(watch.out))][begin:]
-        if len(behind) < 60:
+        if len(behind) < TAIL:
             return "only %d frames were left" % len(behind)
         return "%d of %d pictures after its loss differ" % (sum(map(bool, behind)), len(behind)) if any(behind) else None
 
@@ -532,16 +539,16 @@ def ranges_over_earlier_frames(context):
     """Without clears nothing is divided: the collector has everything, and receives everything again."""
     watch = Watch(context, MAX_FRAMES, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
     with watch.start() as run:
-        if not run.wait_for_line("frame 40 "):
+        if not run.wait_for_line("frame %d " % START):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(first_nodes(run)[0], signal.SIGKILL)
         if not run.wait_for_line(BACK, 30):
             return "it did not rejoin: " + " | ".join(run.standard_error[-6:])
-        watch.enough(run, UNDER_WAY + 100)
+        watch.enough(run, UNDER_WAY + TAIL)
         wrong = watch.end(run)
         if wrong is not None:
             return wrong
-        behind = [columns_that_differ(a, b) for a, b in zip(watch.native()[-100:], saved_pictures(watch.out)[-100:])]
+        behind = [columns_that_differ(a, b) for a, b in zip(watch.native()[-TAIL:], saved_pictures(watch.out, TAIL))]
         return "%d of the last pictures differ" % sum(map(bool, behind)) if any(behind) else None
 
 
@@ -555,7 +562,7 @@ def frames_over_earlier_frames(context):
 @case
 def nodes_that_are_busy(context):
     """Without pauses: all processes wait for the nodes, and the returning node is no faster."""
-    return kill_and_compare(context, frames=5 * MAX_FRAMES, environment={"SCENE_PAUSE_US": "0"}, at=100, every=50)
+    return kill_and_compare(context, frames=5 * MAX_FRAMES, environment={"SCENE_PAUSE_US": "0"}, at=60, every=25)
 
 
 @case
@@ -564,7 +571,7 @@ def killed_while_it_catches_up(context):
     watch = Watch(context)
     half = WIDTH // 2
     with watch.start() as run:
-        if not run.wait_for_line("frame 60 "):
+        if not run.wait_for_line("frame %d " % START):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         known = set(first_nodes(run))
         frame = latest_frame(run)
@@ -589,13 +596,26 @@ def killed_while_it_catches_up(context):
 
 
 def fresh_node(run, known, seconds=15):
+    """Returns the pid of a new node. It reads only the run's own processes, because a search of all takes the CPU time of
+    the session."""
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
-        fresh = [pid for pid in run.processes(cases.NODE) if pid not in known]
-        if fresh:
-            return fresh[0]
-        time.sleep(0.002)
+        waiting = [run.process.pid]
+        while waiting:
+            pid = waiting.pop()
+            if re.search(cases.NODE, command_of(pid)):
+                return pid
+            waiting += [child for child in children_of(pid) if child not in known]
+        time.sleep(0.005)
     return None
+
+
+def command_of(pid):
+    try:
+        with open("/proc/%d/cmdline" % pid, "rb") as file:
+            return file.read().replace(b"\0", b" ").decode(errors="replace")
+    except OSError:
+        return ""  # has ended meanwhile
 
 
 def kill_and_compare_ends(context, options, tiles, victims, against=None, environment=None):
@@ -603,7 +623,7 @@ def kill_and_compare_ends(context, options, tiles, victims, against=None, enviro
     time without the nodes may be missing."""
     watch = Watch(context, MAX_FRAMES, options, environment, tiles)
     with watch.start() as run:
-        if not run.wait_for_line("frame 60 "):
+        if not run.wait_for_line("frame %d " % START):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         frame = latest_frame(run)
         pids = first_nodes(run)
@@ -651,7 +671,7 @@ def dies_again_and_again(context):
     watch = Watch(context, options=("--restart-nodes", "2"))
     half = WIDTH // 2
     with watch.start() as run:
-        if not run.wait_for_line("frame 60 "):
+        if not run.wait_for_line("frame %d " % START):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         known = set(first_nodes(run))
         frame = latest_frame(run)
@@ -678,7 +698,7 @@ def lost_for_good(context, options, words):
     watch = Watch(context, options=options)
     half = WIDTH // 2
     with watch.start() as run:
-        if not run.wait_for_line("frame 60 "):
+        if not run.wait_for_line("frame %d " % START):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         known = set(first_nodes(run))
         frame = latest_frame(run)
@@ -761,11 +781,11 @@ def planted_fault_is_seen(context):
 
 @case
 def large_textures(context):
-    """256 MiB of textures: the duration of the rejoin, and the time of the other node's frames meanwhile."""
-    watch = Watch(context, environment={"SCENE_MIB": "256"})
+    """Large textures: the duration of the rejoin, and the time of the other node's frames meanwhile."""
+    watch = Watch(context, environment={"SCENE_MIB": "256" if length.LONG else "96"})
     half = WIDTH // 2
     with watch.start() as run:
-        if not run.wait_for_line("frame 150 ", 120):
+        if not run.wait_for_line("frame %d " % START, 120):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         frame = latest_frame(run)
         os.kill(first_nodes(run)[1], signal.SIGKILL)
@@ -774,12 +794,12 @@ def large_textures(context):
         back = latest_frame(run)
         line = printed(run, BACK)[0]
         print("    " + line)
-        watch.enough(run, 150)
+        watch.enough(run)
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
         times = frame_times(run)
-        for name, part in (("before", times[50:frame - 3]), ("meanwhile", times[frame - 3:back + 3]), ("behind", times[back + 3:])):
+        for name, part in (("before", times[START // 2:frame - 3]), ("meanwhile", times[frame - 3:back + 3]), ("behind", times[back + 3:])):
             part = sorted(part)
             print("    frames %s: %d, median %.1f ms, 95 %% %.1f ms, longest %.1f ms" % (name, len(part), part[len(part) // 2], part[len(part) * 95 // 100], part[-1]))
         return judged(differing, [(frame - 3, range(half, WIDTH))], EXACT)

@@ -27,6 +27,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--build", default="build/release", help="the build folder")
     parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
     parser.add_argument("--programs", help="programs and groups, separated by commas; default all")
+    parser.add_argument("--long-programs", help="further programs of a long run, MURAL_LONG_TESTS=1")
     parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
     parser.add_argument("--long-layouts", help="layouts of a long run, MURAL_LONG_TESTS=1; default those of --layouts")
     parser.add_argument("--tile-queue", metavar="WxH", help="nodes take tiles of this size from a queue; layouts are numbers of nodes then")
@@ -48,6 +49,8 @@ def parse_arguments(description, add_arguments):
     arguments = parser.parse_args()
     if length.LONG and arguments.long_layouts:
         arguments.layouts = arguments.long_layouts
+    if length.LONG and arguments.long_programs:
+        arguments.programs += "," + arguments.long_programs
     return arguments
 
 

@@ -5,16 +5,17 @@ The programs (tests/programs/surfaces) print the pixels that they read from Open
 natively and through Mural, with --verify and with --display app: the lines, the status and the number of compared
 frames must be correct.
 
-  surfaces.py --build build/release [--cases fresh_drawables] [--list]
+  surfaces.py --build build/release [--cases fresh] [--list]
 """
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 import tempfile
 
-from harness import cases, programs
+from harness import cases, length, programs
 
 MODES = {"verify": ["--verify"], "app": ["--display", "app"]}
 SIZE = "253x191"
@@ -45,54 +46,83 @@ def difference(wanted, got):
     return "it printed \"%s\" besides" % got[len(wanted)] if len(got) > len(wanted) else None
 
 
-def through_mural(context, program, mode, status, wanted, report_is_wrong, layout, environment):
+class Program:
+    """A program, and its expected results: status, frames on the wall, and frames that --verify cannot compare, by
+    reason."""
+
+    def __init__(self, name, frames, status=0, uncompared=None, environment=None):
+        self.name, self.frames, self.status = name, frames, status
+        self.uncompared, self.environment = uncompared or {}, environment or {}
+
+    def command(self, context):
+        settings = "".join("%s=%s " % item for item in self.environment.items())
+        return '%s%s --size %s; echo "%s: status $?"' % (settings, shlex.quote(context.program(self.name)), SIZE, self.name)
+
+
+def report_is_wrong(report, mode, group):
+    frames = sum(program.frames for program in group)
+    if report["frames"] < frames:
+        return "%d frames are on the wall instead of %d" % (report["frames"], frames)
+    if mode != "verify":
+        return None
+    if report["differingPixels"] != 0 or report["verifiedFrames"] == 0:
+        return "%d pixels of %d frames differ" % (report["differingPixels"], report["verifiedFrames"])
+    reasons = {}
+    for program in group:
+        for reason, count in program.uncompared.items():
+            reasons[reason] = reasons.get(reason, 0) + count
+    if report["uncomparedFramesBy"] != reasons or report["uncomparedFrames"] != sum(reasons.values()):
+        return "frames that were not compared: %s" % report["uncomparedFramesBy"]
+    return None
+
+
+def through_mural(context, group, mode, wanted, layout):
+    """Runs the programs one after the other. They share a session, whose start takes longer than a program."""
     with tempfile.TemporaryDirectory(prefix="mural-surfaces.") as folder:
         report_file = os.path.join(folder, "report.json")
         options = ["--tiles", layout, "--quiet", "--report", report_file] + MODES[mode]
-        command = ["env"] + ["%s=%s" % item for item in environment.items()] + [context.program(program), "--size", SIZE]
+        command = ["sh", "-c", "; ".join(program.command(context) for program in group)]
         with context.run(command, options, OF_NODES) as run:
-            wrong = cases.check_end(run, status) or difference(wanted, run.standard_output)
+            wrong = cases.check_end(run, 0) or difference(wanted, run.standard_output)
             if wrong is not None:
                 return "%s: %s" % (mode, wrong)
         with open(report_file, encoding="utf-8") as file:
-            wrong = report_is_wrong(json.load(file), mode)
+            wrong = report_is_wrong(json.load(file), mode, group)
     return "%s: %s" % (mode, wrong) if wrong else None
 
 
-def surfaces(program, frames, status=0, uncompared=None, layout="2x2", environment=None):
-    """Checks one program. uncompared: {reason: number of frames that --verify cannot compare}."""
-    def report_is_wrong(report, mode):
-        if report["frames"] < frames:
-            return "%d frames are on the wall instead of %d" % (report["frames"], frames)
-        if mode != "verify":
-            return None
-        if report["differingPixels"] != 0 or report["verifiedFrames"] == 0:
-            return "%d pixels of %d frames differ" % (report["differingPixels"], report["verifiedFrames"])
-        reasons = uncompared or {}
-        if report["uncomparedFramesBy"] != reasons or report["uncomparedFrames"] != sum(reasons.values()):
-            return "frames that were not compared: %s" % report["uncomparedFramesBy"]
-        return None
+def surfaces(name, layout, *group):
+    """Adds a case for these programs; in a long run one for each of them."""
+    if length.LONG and len(group) > 1:
+        for program in group:
+            surfaces(program.name, "2x2", program)
+        return
 
     def check(context):
-        wanted = natively(context, program, status, environment or {})
-        if wanted is None:
-            return "it fails natively"
+        wanted = []
+        for program in group:
+            lines = natively(context, program.name, program.status, program.environment)
+            if lines is None:
+                return "%s fails natively" % program.name
+            wanted += lines + ["%s: status %d" % (program.name, program.status)]
         for mode in MODES:
-            wrong = through_mural(context, program, mode, status, wanted, report_is_wrong, layout, environment or {})
+            wrong = through_mural(context, group, mode, wanted, layout)
             if wrong is not None:
                 return wrong
         return None
-    check.__name__ = program
+    check.__name__ = name
     cases.case(check)
 
 
-surfaces("fresh_drawables", 38, uncompared={"window size unknown": 8}, environment=OF_PROGRAMS)
-surfaces("fresh_objects", 1, layout="2x1")
-surfaces("swaps_elsewhere", 11, uncompared={"front buffer": 1})
-surfaces("egl_surfaces", 8, uncompared={"window size unknown": 2}, environment=OF_PROGRAMS)
-surfaces("at_exit_glx", 9, status=9, layout="2x1")
-surfaces("at_exit_egl", 9, status=9, layout="2x1")
-surfaces("at_exit_es", 9, status=9, layout="2x1", uncompared={"own picture not readable": 6})
+surfaces("fresh_ones", "2x2",
+         Program("fresh_drawables", 38, uncompared={"window size unknown": 8}, environment=OF_PROGRAMS),
+         Program("fresh_objects", 1),
+         Program("egl_surfaces", 8, uncompared={"window size unknown": 2}, environment=OF_PROGRAMS))
+surfaces("swaps_and_ends", "2x1",
+         Program("swaps_elsewhere", 11, uncompared={"front buffer": 1}),
+         Program("at_exit_glx", 9, status=9),
+         Program("at_exit_egl", 9, status=9),
+         Program("at_exit_es", 9, status=9, uncompared={"own picture not readable": 6}))
 
 if __name__ == "__main__":
     sys.exit(cases.main(__doc__))

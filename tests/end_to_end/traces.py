@@ -19,6 +19,7 @@ FRAMES = 6
 SIZE = (253, 191)
 RECORD = ("--display", "none", "--tiles", "1x1")
 LAYOUTS = ("1x1", "2x2") if length.LONG else ("2x2",)
+RECORDED = {}  # bytes and pictures of traces by their programs, because several cases need the same
 
 
 class Workplace:
@@ -34,14 +35,26 @@ class Workplace:
     def session(self, arguments, environment=None):
         return session.Session([self.context.mural] + list(arguments), self.context.display, environment)
 
-    def record(self, program, options=RECORD, arguments=(), frames=FRAMES, status=0):
-        """Records a run into a.mural, and returns its pictures of --out."""
+    def record(self, *names, options=RECORD, frames=FRAMES):
+        """Records programs, which run one after the other, into a.mural, and returns their pictures of --out."""
+        key = (names, options, frames)
+        if key not in RECORDED:
+            RECORDED[key] = self._record(names, options, frames)
+        whole, live = RECORDED[key]
+        with open(self.path("a.mural"), "wb") as file:
+            file.write(whole)
+        return live
+
+    def _record(self, names, options, frames):
         out = self.path("live")
         shutil.rmtree(out, ignore_errors=True)
-        command = [self.context.program(program), "--size", "%dx%d" % SIZE, "--frames", str(frames)] + list(arguments)
+        command = [self.context.program(names[0]), "--size", "%dx%d" % SIZE, "--frames", str(frames)]
+        if len(names) > 1:
+            command = ["sh", "-c", 'for program; do "$program" %s || exit; done' % " ".join(command[1:]), "sh"] + [self.context.program(name) for name in names]
         with self.context.run(command, list(options) + ["--record", self.path("a.mural"), "--out", out]) as run:
-            self.check(run, status)
-        return shown(out)
+            self.check(run, 0)
+        with open(self.path("a.mural"), "rb") as file:
+            return file.read(), shown(out)
 
     def replay(self, options, file="a.mural", environment=None):
         out = self.path("replayed")
@@ -139,21 +152,38 @@ def case(function):
 
 # ---- a replay shows the recorded pictures
 
-def replayed(place, program, layouts):
-    windows = place.native(program)
-    wrong = unlike_all(windows, place.record(program))
-    if wrong is not None:
-        return "recorded: " + wrong
-    for options in layouts:
-        wrong = unlike_all(windows, place.replay(options))
-        if wrong is not None:
-            return "%s: %s" % (" ".join(options), wrong)
-    return None
+def sessions(names):
+    """Returns the programs of each session. They share one, because its start takes longer than a program."""
+    return [(name,) for name in names] if length.LONG else [tuple(names)]
+
+
+def matched(natively, got, what):
+    """Compares the pictures of programs that ran one after the other with native ones. Returns, by program, the number of
+    earlier pictures, and its pictures."""
+    places, at = {}, 0
+    for name, windows in natively.items():
+        found = next((frames for frames in windows.values() if alike(frames, got[at:at + len(frames)])), None)
+        if found is None:
+            frames = min(map(len, windows.values()))
+            raise AssertionError("%s, %s: %s" % (what, name, unlike_all(windows, got[at:at + frames])))
+        places[name] = (at, found)
+        at += len(found)
+    if at != len(got):
+        raise AssertionError("%s: %d pictures instead of %d" % (what, len(got), at))
+    return places
+
+
+def recorded(place, names):
+    """Records programs into a.mural. Returns their native pictures, and the result of the comparison with these."""
+    natively = {name: place.native(name) for name in names}
+    return natively, matched(natively, place.record(*names), "recorded")
 
 
 def all_replayed(place, names, layouts=tuple(("--tiles", layout) for layout in LAYOUTS)):
-    wrong = {name: replayed(place, name, layouts) for name in names}
-    return next(("%s: %s" % item for item in wrong.items() if item[1] is not None), None)
+    for together in sessions(names):
+        natively = recorded(place, together)[0]
+        for options in layouts:
+            matched(natively, place.replay(options), " ".join(options))
 
 
 @case
@@ -182,12 +212,12 @@ def replay_shared_work(place):
 @case
 def replay_windows(place):
     """Windows that are created and destroyed, and several processes: the wall shows the same as before."""
-    for program in ("several_windows", "window_switch", "window_churn", "fork_child", "fork_exec"):
-        live = place.record(program)
+    for together in sessions(("several_windows", "window_switch", "window_churn", "fork_child", "fork_exec")):
+        live = place.record(*together)
         for tiles in LAYOUTS:
             wrong = differing(live, place.replay(["--tiles", tiles]))
             if wrong is not None:
-                return "%s, %s: %s" % (program, tiles, wrong)
+                return "%s, %s: %s" % (", ".join(together), tiles, wrong)
     return None
 
 
@@ -206,7 +236,7 @@ def replay_finds_a_planted_fault(place):
     """A node that draws differently from the trace is detected."""
     live = place.record("immediate")
     for fault in ("opcode", "drop"):
-        if differing(live, place.replay(["--tiles", "2x2"], environment={"MURAL_PLANT": fault})) is None:
+        if differing(live, place.replay(["--tiles", "2x1"], environment={"MURAL_PLANT": fault})) is None:
             return "the fault %s was not seen" % fault
     return None
 
@@ -304,18 +334,21 @@ def arguments_of_a_file_without_a_frame(place):
 
 # ---- trim
 
-def trimmed(place, program, frames=(3, 5), options=("--tiles", "2x2")):
-    """Returns None if a part shows the same as the whole file there, and the messages about it."""
-    live = place.record(program)
-    printed = place.trim("%d-%d" % frames)
-    return differing(live[frames[0] - 1:frames[1]], place.replay(options, "b.mural")), printed
-
-
-def all_trimmed(place, names, **more):
-    for name in names:
-        wrong, printed = trimmed(place, name, **more)
-        if wrong is not None:
-            return "%s: %s; %s" % (name, wrong, printed)
+def all_trimmed(place, names, frames=(3, 5), leaves_out=False):
+    """Checks that a trimmed trace shows, on other tiles, the programs' native pictures."""
+    number = 0
+    # The draws left out of one program are countable only in a trace without others.
+    for together in [(name,) for name in names] if leaves_out else sessions(names):
+        places = recorded(place, together)[1]
+        for name, (earlier, native) in places.items():
+            printed = place.trim("%d-%d" % tuple(earlier + frame for frame in frames))
+            number += 1
+            for tiles in ("2x2", "3x1") if length.LONG else ("2x1",) if number % 2 == 1 else ("1x1",):
+                wrong = differing(native[frames[0] - 1:frames[1]], place.replay(["--tiles", tiles], "b.mural"))
+                if wrong is not None:
+                    return "%s, %s: %s; %s" % (name, tiles, wrong, printed)
+            if leaves_out and draws_left_out(printed) == 0:
+                return "%s: %s" % (name, printed)
     return None
 
 
@@ -325,11 +358,7 @@ def draws_left_out(printed):
 
 @case
 def trim_leaves_out_what_nobody_sees(place):
-    for program in ("immediate", "client_arrays", "core_arrays", "many_triangles"):
-        wrong, printed = trimmed(place, program)
-        if wrong is not None or draws_left_out(printed) == 0:
-            return "%s: %s; %s" % (program, wrong, printed)
-    return None
+    return all_trimmed(place, ("immediate", "client_arrays", "core_arrays", "many_triangles"), leaves_out=True)
 
 
 @case
@@ -338,35 +367,24 @@ def trim_keeps_what_later_frames_need(place):
     return all_trimmed(place, length.some(("frames_kept", "pixels_read", "framebuffers", "accum_buffer", "front_and_back", "queries", "fragment_counters", "display_lists")))
 
 
-TRIMMED_ON_TILES = ("pixels_draw", "framebuffers", "textures_classic", "textures_modern", "display_lists", "client_arrays", "core_arrays", "fixed_lighting", "blend_modes",
-                    "attribute_stacks", "glsl_stages", "glsl_uniforms", "accum_buffer", "queries", "raster_state", "es3_scene")
-
-
-def trim_on_tiles(first):
-    """A trimmed trace shows, on other tiles, the program's native pictures."""
-    def check(place):
-        for program in length.some(TRIMMED_ON_TILES[first::2]):
-            windows = place.native(program)
-            wrong = unlike_all(windows, place.record(program))
-            printed = place.trim("3-5")
-            for tiles in ("2x2", "3x1") if length.LONG else ("2x2",):
-                wrong = wrong or unlike_all({name: frames[2:5] for name, frames in windows.items()}, place.replay(["--tiles", tiles], "b.mural"))
-                if wrong is not None:
-                    return "%s, %s: %s; %s" % (program, tiles, wrong, printed)
-                print("  %s: 3 frames on %s tiles as natively" % (program, tiles))
-        return None
-    check.__name__ = "tiles_trimmed_%d" % (first + 1)
-    case(check)
-
-
-trim_on_tiles(0)
-trim_on_tiles(1)
+@case
+def tiles_trimmed(place):
+    """State of all kinds. A short run leaves out programs of the cases above."""
+    more = ("framebuffers", "textures_classic", "textures_modern", "client_arrays", "core_arrays", "fixed_lighting", "glsl_stages", "glsl_uniforms", "raster_state", "es3_scene")
+    return all_trimmed(place, ("pixels_draw", "display_lists", "blend_modes", "accum_buffer", "attribute_stacks", "queries") + (more if length.LONG else ()))
 
 
 @case
 def trim_to_one_frame(place):
     """The last frame, with objects and state of all earlier ones; of several windows."""
-    return all_trimmed(place, ("textures_classic", "glsl_uniforms", "persistent_frames", "several_windows", "fork_child"), frames=(FRAMES, FRAMES), options=("--tiles", "2x1"))
+    wrong = all_trimmed(place, ("textures_classic", "glsl_uniforms", "persistent_frames"), frames=(FRAMES, FRAMES))
+    for program in ("several_windows", "fork_child"):
+        if wrong is None:
+            live = place.record(program)
+            printed = place.trim("%d-%d" % (FRAMES, FRAMES))
+            wrong = differing(live[FRAMES - 1:FRAMES], place.replay(["--tiles", "2x1"], "b.mural"))
+            wrong = wrong and "%s: %s; %s" % (program, wrong, printed)
+    return wrong
 
 
 @case
@@ -434,12 +452,13 @@ def dump_refuses_what_is_not_there(place):
 @case
 def dump_understands_all_programs(place):
     """The printer finds no malformed record in these."""
-    for program in ("client_arrays", "glsl_stages", "textures_modern", "buffers", "display_lists", "feedback_select", "egl_images", "compute_images", "arb_programs"):
-        place.record(program, frames=2)
+    for together in sessions(("client_arrays", "glsl_stages", "textures_modern", "buffers", "display_lists", "feedback_select", "egl_images", "compute_images", "arb_programs")):
+        place.record(*together, frames=2)
         done = place.mural("dump", place.path("a.mural"))
         odd = [line for line in done.stdout.splitlines() if "malformed" in line or ", unknown" in line]
-        if done.returncode != 0 or odd or not done.stdout:
-            return "%s: %s" % (program, odd[:1] or done.stderr)
+        missing = [name for name in together if "program started: %s," % name not in done.stdout]
+        if done.returncode != 0 or odd or missing:
+            return "%s: %s" % (", ".join(together), odd[:1] or missing or done.stderr)
     return None
 
 

@@ -6,6 +6,7 @@ wall_frames.py --build build/release [--cases windows,front] [--list]
 
 import json
 import os
+import shlex
 import struct
 import sys
 import tempfile
@@ -16,13 +17,13 @@ FRAMES = 3
 WIDTH, HEIGHT = 252, 190
 
 
-def saved(context, program, options=(), environment=None):
-    """Returns an error or None, and the PNG files in the order of their names: (width, height, bytes)."""
+def saved(context, *commands):
+    """Runs shell commands in one session. Returns an error or None, and the PNG files in the order of their names:
+    (width, height, bytes)."""
     with tempfile.TemporaryDirectory(prefix="mural-wall-frames.") as folder:
         report_file, out = os.path.join(folder, "report.json"), os.path.join(folder, "out")
-        command = [context.program(program), "--frames", str(FRAMES), "--size", "%dx%d" % (WIDTH, HEIGHT)]
-        more = ["--tiles", "2x2", "--display", "none", "--out", out, "--report", report_file]
-        with context.run(command, more + list(options), environment) as run:
+        more = ["--tiles", "2x1", "--display", "none", "--out", out, "--report", report_file]
+        with context.run(["sh", "-ec", "; ".join(commands)], more) as run:
             wrong = cases.check_end(run, 0)
             if wrong is not None:
                 return wrong, []
@@ -38,43 +39,39 @@ def saved(context, program, options=(), environment=None):
     return wrong, files
 
 
+def drawing(context, program, settings=""):
+    return "%s %s --frames %d --size %dx%d" % (settings, shlex.quote(context.program(program)), FRAMES, WIDTH, HEIGHT)
+
+
+SMALL, LARGE = (WIDTH // 2, HEIGHT // 2), (WIDTH, HEIGHT)
+
+
 @cases.case
 def windows_change(context):
-    """A splash screen, the main window, and the remaining window after the main window's end."""
-    wrong, files = saved(context, "window_switch")
+    """A splash screen, the main window, and the remaining window after the main window's end. Then the X server destroys
+    the large window, for a request that names another window or none."""
+    ways = ("parent", "subwindows", "kill", "close")
+    wrong, files = saved(context, drawing(context, "window_switch"), *(drawing(context, "windows_end", "WINDOWS_END=" + way) for way in ways))
     if wrong is not None:
         return wrong
-    small, large = (WIDTH // 2, HEIGHT // 2), (WIDTH, HEIGHT)
     sizes = [file[:2] for file in files]
-    wanted = [small] * FRAMES + [large] * FRAMES + [small] * FRAMES
+    wanted = [SMALL] * FRAMES + ([LARGE] * FRAMES + [SMALL] * FRAMES) * (1 + len(ways))
     return None if sizes == wanted else "pictures of the sizes %s" % sizes
-
-
-@cases.case
-def windows_end_unnamed(context):
-    """The X server destroys the large window, for a request that names another window or none."""
-    wanted = [(WIDTH, HEIGHT)] * FRAMES + [(WIDTH // 2, HEIGHT // 2)] * FRAMES
-    for way in ("parent", "subwindows", "kill", "close"):
-        wrong, files = saved(context, "windows_end", environment={"WINDOWS_END": way})
-        sizes = [file[:2] for file in files]
-        if wrong is not None or sizes != wanted:
-            return "%s: %s, pictures of the sizes %s" % (way, wrong, sizes)
-    return None
 
 
 @cases.case
 def drawables_of_one_window(context):
     """Two connections, each with its own drawable: all their swaps are in the window, and on the wall."""
-    wrong, files = saved(context, "windows_end", environment={"WINDOWS_END": "shared"})
+    wrong, files = saved(context, drawing(context, "windows_end", "WINDOWS_END=shared"))
     if wrong is not None:
         return wrong
-    return None if [file[:2] for file in files] == [(WIDTH, HEIGHT)] * (2 * FRAMES) else "%d pictures" % len(files)
+    return None if [file[:2] for file in files] == [LARGE] * (2 * FRAMES) else "%d pictures" % len(files)
 
 
 @cases.case
 def front_buffer_is_shown(context):
     """Each swap, and each glFlush after front-buffer drawing, is a new picture."""
-    wrong, files = saved(context, "front_buffer")
+    wrong, files = saved(context, drawing(context, "front_buffer"))
     if wrong is not None:
         return wrong
     if len(files) != 3 * FRAMES:

@@ -10,7 +10,7 @@ As run_exact.py, but the pictures are the windows' contents (window_grab.c), not
 import os
 import sys
 
-from harness import programs
+from harness import programs, shared_nodes
 import run_exact
 
 # Without threads_windows: its windows overlap, so a read returns the pixels that another thread has just shown there.
@@ -25,6 +25,22 @@ class WindowComparison(run_exact.Comparison):
         return programs.run_program(arguments.build, name, folder, self.display_name, arguments.size,
                                     arguments.frames, launcher, arguments.seconds, environment,
                                     library="window_grab.so")
+
+    def run_shared(self, name, label, launcher):
+        if label not in self.shared:
+            self.forget_report(label)
+            self.shared[label] = WindowNodes(launcher, self.display_name, os.path.join(self.folder, "shared." + label))
+            self.shared[label].read = self.arguments.read
+        return super().run_shared(name, label, launcher)
+
+
+class WindowNodes(shared_nodes.SharedNodes):
+    """Nodes for several programs, whose windows are captured."""
+
+    def run_program(self, build, name, folder, size, frames, seconds=120):
+        os.makedirs(folder)
+        settings, words = programs.command_of(build, name, folder, size, frames, "window_grab.so")
+        return programs.Run(*self.run("GRAB_READ=%s %s" % (self.read, settings), words, folder + ".log", seconds), folder)
 
 
 def add_arguments(parser):
