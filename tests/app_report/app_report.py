@@ -5,6 +5,8 @@ without end, leave processes or need a network. Each report is bounded in time, 
   app_report.py --mural BIN/mural --programs BUILD/tests/programs [--cases exact,hang]
 """
 import argparse
+import concurrent.futures
+import itertools
 import json
 import os
 import subprocess
@@ -24,13 +26,13 @@ STATUS = {EXACT: 0, DIFFERENCES: 1, ALONE: 2, NOT_CAPTURABLE: 2}
 class Lab:
     def __init__(self, arguments, folder):
         self.mural, self.programs, self.folder = os.path.abspath(arguments.mural), os.path.abspath(arguments.programs), folder
-        self.number = 0
+        self.numbers = itertools.count(1)
 
-    def run(self, program, seconds=SECONDS, options=()):
+    def run(self, program, seconds=SECONDS, options=(), file=None):
         """Returns the report, and an error about the run itself."""
-        self.number += 1
-        mark = 'APP_REPORT_TEST=%d.%d' % (os.getpid(), self.number)
-        file = os.path.join(self.folder, '%d.json' % self.number)
+        number = next(self.numbers)
+        mark = 'APP_REPORT_TEST=%d.%03d' % (os.getpid(), number)  # no mark is the beginning of another one
+        file = file or os.path.join(self.folder, '%d.json' % number)
         words = [word.replace('{programs}', self.programs) for word in program]
         command = [self.mural, 'app-report', '--seconds', str(seconds), '--json', file, *options, '--', *words]
         began = time.monotonic()
@@ -69,7 +71,7 @@ def expect(lab, program, verdict, words=(), **more):
 
 def exact(lab):
     page = os.path.join(lab.folder, 'app.html')
-    report, wrong = lab.run(['{programs}/long_run', '--frames', '100000', '--size', '250x190'], seconds=5, options=['--html', page])
+    report, wrong = lab.run(['{programs}/long_run', '--frames', '100000', '--size', '250x190'], seconds=2.5, options=['--html', page])
     if wrong or report['verdict'] != EXACT:
         return wrong or report['sentence']
     with open(page, encoding='utf-8') as stream:
@@ -91,13 +93,6 @@ def exact(lab):
     if fact(report, 'traffic', 'nodeMemoryBytes')['value'] < 1e7:
         return 'a node of less than 10 MB'
     return None
-
-
-def no_pictures(lab):
-    page = os.path.join(lab.folder, 'plain.html')
-    _, wrong = lab.run(['{programs}/long_run', '--frames', '100000'], options=['--html', page, '--no-pictures'])
-    with open(page, encoding='utf-8') as stream:
-        return wrong or ('a picture in spite of --no-pictures' if 'data:image' in stream.read() else None)
 
 
 def own_status(lab):
@@ -165,15 +160,22 @@ def unsupported(lab):
 
 
 def leaves_processes(lab):
-    return expect(lab, ['sh', '-c', 'setsid sleep 601 >/dev/null 2>&1 & exec {programs}/long_run --frames 100000 --size 100x100'], EXACT)
+    """Its page has no pictures on request."""
+    page = os.path.join(lab.folder, 'plain.html')
+    wrong = expect(lab, ['sh', '-c', 'setsid sleep 601 >/dev/null 2>&1 & exec {programs}/long_run --frames 100000 --size 100x100'], EXACT,
+                   options=['--html', page, '--no-pictures'])
+    if wrong:
+        return wrong
+    with open(page, encoding='utf-8') as stream:
+        return 'a picture in spite of --no-pictures' if 'data:image' in stream.read() else None
 
 
 def diff(lab):
-    for _ in range(2):
-        _, wrong = lab.run(['true'])
+    files = [os.path.join(lab.folder, name) for name in ('first.json', 'second.json')]
+    for file in files:
+        _, wrong = lab.run(['true'], file=file)
         if wrong:
             return wrong
-    files = [os.path.join(lab.folder, '%d.json' % (lab.number - i)) for i in (1, 0)]
     same = subprocess.run([lab.mural, 'app-report', '--diff', *files], capture_output=True, text=True, timeout=60)
     with open(files[1], encoding='utf-8') as stream:
         other = json.load(stream)
@@ -204,7 +206,9 @@ def interrupted(lab):
     return None if process.returncode == 130 and 'interrupted' in errors and not left else 'status %d, %s, left %s' % (process.returncode, errors, left)
 
 
-CASES = {f.__name__: f for f in (exact, no_pictures, own_status, not_found, static, osmesa, x11, draws_nothing, crash, hang, hang_without_end, prints, network, unsupported, leaves_processes, diff, interrupted)}
+# Programs without any window: their runs wait for most of their time, so they wait together.
+WAITING = (not_found, static, draws_nothing, crash, hang, hang_without_end, prints, network, diff)
+CASES = {f.__name__: f for f in (exact, own_status, unsupported, leaves_processes, osmesa, x11, interrupted) + WAITING}
 
 
 def main():
@@ -213,13 +217,17 @@ def main():
     parser.add_argument('--programs', required=True)
     parser.add_argument('--cases', default=','.join(CASES))
     arguments = parser.parse_args()
-    failed = 0
     with tempfile.TemporaryDirectory() as folder:
         lab = Lab(arguments, folder)
-        for name in arguments.cases.split(','):
+        def perform(name):
             wrong = CASES[name](lab)
-            failed += wrong is not None
             print('%s: %s' % (name, 'ok' if wrong is None else 'FAILED: ' + wrong), flush=True)
+            return wrong is not None
+
+        names = arguments.cases.split(',')
+        failed = sum(perform(name) for name in names if CASES[name] not in WAITING)
+        with concurrent.futures.ThreadPoolExecutor(4) as together:
+            failed += sum(together.map(perform, [name for name in names if CASES[name] in WAITING]))
     sys.exit(1 if failed else 0)
 
 

@@ -47,9 +47,10 @@ ONE_RANGE = """compound { channel "one" range [ 0 .5 ] DFR_equalizer { framerate
 
 
 class Drawn:
-    """One run of the program with a configuration: its pictures, report and messages."""
+    """One run of the program with a configuration: its pictures, report and messages. last: number of pictures to read,
+    from the end; 0: all."""
 
-    def __init__(self, context, tree, rate, frames=FRAMES, options=(), environment=None, saves=True, during=None, complete=True):
+    def __init__(self, context, tree, rate, frames=FRAMES, options=(), environment=None, saves=True, during=None, complete=True, last=0):
         with tempfile.TemporaryDirectory(prefix="mural-resolution.") as folder:
             config, report = os.path.join(folder, "dfr.eqc"), os.path.join(folder, "report.json")
             out = os.path.join(folder, "out")
@@ -71,21 +72,21 @@ class Drawn:
             with open(report, encoding="utf-8") as file:
                 self.equalizers = json.load(file)["equalizers"] or []
             if saves:
-                self.pictures = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))]
+                self.pictures = [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))[-last:]]
 
     def equalizer(self):
         return next(e for e in self.equalizers if e["divides"] == "zoom")
 
 
-NATIVE = {}  # by environment
+NATIVE = {}  # by number of frames and environment
 
 
-def native(context, environment=None):
+def native(context, environment=None, frames=FRAMES):
     """Returns the pictures of a native run."""
-    key = tuple(sorted((environment or {}).items()))
+    key = frames, tuple(sorted((environment or {}).items()))
     if key not in NATIVE:
         with tempfile.TemporaryDirectory(prefix="mural-resolution.") as folder:
-            run = programs.run_program(context.build, PROGRAM, os.path.join(folder, "native"), context.display, "%dx%d" % (WIDTH, HEIGHT), FRAMES, more_environment=dict(LOAD, **(environment or {})))
+            run = programs.run_program(context.build, PROGRAM, os.path.join(folder, "native"), context.display, "%dx%d" % (WIDTH, HEIGHT), frames, more_environment=dict(LOAD, **(environment or {})))
             if run.status != 0:
                 raise SystemExit("the program fails natively: status %s: %s" % (run.status, run.output[-200:]))
             NATIVE[key] = [pictures.read_ppm(path) for _, path in sorted(run.frames().items())]
@@ -136,7 +137,8 @@ def planted_faults_are_found(context):
     return None if wrong is not None and "are coarser" in wrong else "not found: %s" % wrong
 
 
-@cases.case
+# moving_halves has the same nodes
+@cases.long_case
 def halves_of_the_picture(context):
     return judged(context, Drawn(context, HALVES, HIGH_RATE))
 
@@ -221,11 +223,11 @@ def returns(context, tree, victim):
     with tempfile.TemporaryDirectory(prefix="mural-resolution.") as folder:
         end_file = os.path.join(folder, "end")
         during = lambda context, run: killed_and_returned(context, run, victim, end_file)
-        drawn = Drawn(context, tree, HIGH_RATE, 6000, environment={"LOAD_PAUSE_MS": "15", "LOAD_STILL": "6000", "LOAD_STEP_LAYERS": "20", "END_FILE": end_file}, during=during, complete=False)
+        drawn = Drawn(context, tree, HIGH_RATE, 6000, environment={"LOAD_PAUSE_MS": "15", "LOAD_STILL": "6000", "LOAD_STEP_LAYERS": "20", "END_FILE": end_file}, during=during, complete=False, last=TAIL + 20)
         if drawn.wrong is not None:
             return drawn.wrong
         still = str(drawn.still)
-        wanted = native(context, {"LOAD_FIRST": still, "LOAD_STILL": still, "LOAD_STEP": "0", "LOAD_STEP_LAYERS": "20"})[-1]
+        wanted = native(context, {"LOAD_FIRST": still, "LOAD_STILL": still, "LOAD_STEP": "0", "LOAD_STEP_LAYERS": "20"}, 3)[-1]
         coarse = sum(differing(a, b) > 0 for a, b in zip(drawn.pictures[-TAIL - 12:-TAIL - 2], drawn.pictures[-TAIL - 11:-TAIL - 1]))
         apart = [differing(wanted, picture) for picture in drawn.pictures[3 - TAIL:]]
         if any(apart) or coarse == 0:
@@ -239,14 +241,15 @@ def returning_half(context):
     return returns(context, HALVES, 1)
 
 
-@cases.case
+# returning_collector has the same nodes
+@cases.long_case
 def returning_range(context):
-    """A returned node takes the zoom over that the others have; otherwise its part has another size."""
     return returns(context, RANGES, 1)
 
 
 @cases.case
 def returning_collector(context):
+    """A returned node takes the zoom over that the others have; otherwise its part has another size."""
     return returns(context, RANGES, 0)
 
 
@@ -279,9 +282,9 @@ def frozen_zooms_stay(context):
 def the_rate_is_held(context):
     """The rate after the step of the load is near the wanted one. The machine may be busy, so the wanted rate is
     relative to this machine's, and single frames do not count."""
-    frames, still = 130, 120
+    frames, still = 100, 90
     environment = {"LOAD_STILL": str(still), "LOAD_STEP_LAYERS": "200"}
-    free = Drawn(context, ONE, 0.01, 60, environment=environment, saves=False)
+    free = Drawn(context, ONE, 0.01, 40, environment=environment, saves=False)
     if free.wrong is not None:
         return free.wrong
     slow = statistics.median(b - a for a, b in zip(free.times[STEP:], free.times[STEP + 1:])) / 1000

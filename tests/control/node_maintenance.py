@@ -162,18 +162,19 @@ def errors(context):
     """Each error is one line with the next step, and changes nothing."""
     wrong = []
     command = [context.program("long_run"), "--frames", "100000", "--size", SIZE]
-    for options, words, text in ((("--tiles", "2x1"), ("stop-node", "1"), "add force"), (("--tiles", "1x1"), ("stop-node", "0"), "the only node that draws"),
-                                 (("--db", "2", "--local-nodes", "2"), ("stop-node", "1"), "share the draws"), (("--tiles", "2x1"), ("stop-node", "2"), "no node 2"),
-                                 (("--tiles", "2x1"), ("start-node", "1"), "a member already")):
+    for options, requests in ((("--tiles", "2x1"), ((("stop-node", "1"), "add force"), (("stop-node", "2"), "no node 2"), (("start-node", "1"), "a member already"))),
+                              (("--tiles", "1x1"), ((("stop-node", "0"), "the only node that draws"),)),
+                              (("--db", "2", "--local-nodes", "2"), ((("stop-node", "1"), "share the draws"),))):
         with context.run(command, list(options) + ["--display", "none"]) as run:
             if not wait_for(context, run, lambda status: status["frames"] >= 5):
                 return "no frames"
-            status, _, message = ctl(context, str(run.process.pid), *words)
-            if status != 1 or text not in message or message.count("\n") != 1:
-                wrong.append("%s: status %d, %s" % (" ".join(words), status, message))
-            wrong += [] if more_frames(context, run) else ["no frames after %s" % " ".join(words)]
-            states = {node["state"] for node in result_of(context, run, "nodes")["nodes"]}
-            wrong += [] if states == {"alive"} else ["states %s" % states]
+            for words, text in requests:
+                status, _, message = ctl(context, str(run.process.pid), *words)
+                if status != 1 or text not in message or message.count("\n") != 1:
+                    wrong.append("%s: status %d, %s" % (" ".join(words), status, message))
+                wrong += [] if more_frames(context, run) else ["no frames after %s" % " ".join(words)]
+                states = {node["state"] for node in result_of(context, run, "nodes")["nodes"]}
+                wrong += [] if states == {"alive"} else ["states %s" % states]
     return "; ".join(wrong) or None
 
 

@@ -21,7 +21,7 @@ from harness import cases, length, pictures, session  # noqa: E402
 from harness.control import PATIENCE_SECONDS, ctl, result_of  # noqa: E402
 
 SIZE = "250x190"
-PAUSE_US = "1000" if length.LONG else "15000"  # per frame; a session without pauses takes the CPU time of other tests
+PAUSE_US = "1000" if length.LONG else "40000"  # per frame; a session without pauses takes the CPU time of other tests
 LAYOUTS = os.path.join(TOP, "configs", "layouts.eqc")
 CANVASES = os.path.join(TOP, "configs", "wall-and-monitor.eqc")
 

@@ -28,7 +28,7 @@ LEAST_CHANGES = 16
 GROWTH_MIB = 64  # allowed growth in the second half
 GROWTH_MIB_PER_SECOND = 3  # and of the rejoin log, whose thread shares its core with the nodes
 NODES = 3
-PAUSE_US = "1000" if length.LONG else "15000"  # per frame; a session without pauses takes the CPU time of other tests
+PAUSE_US = "1000" if length.LONG else "40000"  # per frame; a session without pauses takes the CPU time of other tests
 PLANS = [("--balance", "auto", "--local-nodes", "3"), ("--tiles", "2x1"), ("--balance", "load", "--local-nodes", "2"), ("--db", "2"),
          ("--dplex", "2"), ("--tile-queue", "64x64", "--local-nodes", "3"), ("--undo",)]
 

@@ -15,6 +15,7 @@ and are no failures of Mural.
 import argparse
 import difflib
 import os
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,7 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "end_to_end"))
 from harness import display   # noqa: E402
+from harness import length    # noqa: E402
 from harness import programs  # noqa: E402
 
 PROFILES = ["compat", "core", "es3", "es1"]
@@ -82,9 +84,11 @@ class Bench:
 
     def extension_file(self, profile):
         if profile not in self.extensions:
-            label = "extensions." + profile
-            self.extensions[profile] = os.path.join(self.folder, label)
-            command = self.launcher + [self.program, "--profile", profile, "--out", self.extensions[profile], "--print-extensions"]
+            # One session writes the files of all profiles.
+            self.extensions = {name: os.path.join(self.folder, "extensions." + name) for name in {profile, *self.arguments.profiles.split(",")}}
+            lines = ["%s --profile %s --out %s --print-extensions" % (shlex.quote(self.program), name, shlex.quote(path))
+                     for name, path in sorted(self.extensions.items())]
+            command = self.launcher + ["sh", "-c", " && ".join(lines)]
             done = subprocess.run(command, env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                   stderr=subprocess.STDOUT, timeout=self.arguments.limit, check=False)
             if done.returncode != 0:
@@ -225,6 +229,7 @@ def parse_arguments():
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--today", action="store_true", help="seeds from one on that the date gives")
     parser.add_argument("--seeds", metavar="FIRST:LAST", type=span_of, help="these, and no more")
+    parser.add_argument("--long-seeds", metavar="FIRST:LAST", type=span_of, help="instead of --seeds with MURAL_LONG_TESTS=1")
     parser.add_argument("--case", metavar="\"SEED STEPS\"", help="one case, with its calls")
     parser.add_argument("--limit", type=float, default=120, help="the longest that one run may take, in seconds")
     parser.add_argument("--no-shrink", action="store_true", help="show differences as they are found")
@@ -244,6 +249,8 @@ def span_of(text):
 
 def main():
     arguments = parse_arguments()
+    if length.LONG and arguments.long_seeds:
+        arguments.seeds = arguments.long_seeds
     profiles = arguments.profiles.split(",")
     started = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="mural-random.") as folder, display.PrivateDisplay("800x600x24") as name:
