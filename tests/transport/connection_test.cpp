@@ -105,7 +105,7 @@ TEST_P(ConnectionTest, preservesOrderOfRandomPieces) {
 
 TEST_P(ConnectionTest, streamsManySmallPieces) {
     link(size_t{1} << 20);
-    streamThrough(b(), a(), testSeed(), size_t{32} << 20, 200);
+    streamThrough(b(), a(), testSeed(), size_t{mural::testing::rounds(32)} << 20, 200);
 }
 
 TEST_P(ConnectionTest, streamsLargePieces) {
