@@ -159,13 +159,13 @@ def check_end(process, inside, name, status, result):
 def stopped(folder):
     """Sends a signal while a process with the given command line runs. Ctrl-C reaches all processes of a terminal."""
     result = os.path.join(folder, 'stopped.json')
-    # A short run sends SIGTERM to the stubborn program only.
-    stubborn = '--', 'sh', '-c', 'trap "" INT TERM; while :; do sleep 0.1; done'
+    # A short run sends SIGTERM only to the program that ignores it.
+    ignoring = '--', 'sh', '-c', 'trap "" INT TERM; while :; do sleep 0.1; done'
     for name, number, send, words, awaited in (('Ctrl-C, and a scene', signal.SIGINT, os.killpg, (), r'mural-scenes '),
                                                ('SIGINT, and mural run', signal.SIGINT, os.kill, ('--quick',), r' run --quiet '),
                                                ('SIGTERM, and mural run', signal.SIGTERM, os.kill, ('--quick',), r' run --quiet '),
                                                ('SIGHUP, and mural run', signal.SIGHUP, os.kill, ('--quick',), r' run --quiet '),
-                                               ('SIGTERM, and a program that ignores it', signal.SIGTERM, os.kill, stubborn, r'^sh -c trap')):
+                                               ('SIGTERM, and a program that ignores it', signal.SIGTERM, os.kill, ignoring, r'^sh -c trap')):
         if not length.LONG and name == 'SIGTERM, and mural run':
             continue
         process, inside = start(folder, '--json', result, *words)
