@@ -115,6 +115,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("out", c.out);
     visit("saveFrames", c.saveFrames, 1);
     visit("record", c.record);
+    visit("frameTimes", c.frameTimes);
     visit("width", c.width, 0);
     visit("height", c.height, 0);
     visit("fullScreen", c.fullScreen);

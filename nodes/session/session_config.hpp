@@ -78,6 +78,7 @@ struct SessionConfig {
     std::string out;                        // --out: folder (PNG) or video file; empty: none
     std::vector<int64_t> saveFrames;        // --save 1,30,90: saved frames; empty: all
     std::string record;                     // --record: file of the programs' streams; empty: none
+    std::string frameTimes;                 // --frame-times: file of the nodes' work per frame; empty: none
     int width = 0, height = 0;              // --size; 0: the program's size
     bool fullScreen = false;                // --fullscreen: wall windows without borders, one per monitor
     int windowX = 0, windowY = 0;           // --position of the wall's upper left corner

@@ -36,6 +36,7 @@
 #include "tools/mural/network/probe_member.hpp"
 #include "tools/mural/page/page_command.hpp"
 #include "tools/mural/simulate/simulate_command.hpp"
+#include "tools/mural/record_costs/record_costs_command.hpp"
 #include "tools/mural/run/slurm_allocation.hpp"
 #include "tools/mural/version_details.hpp"
 #include "tools/mural/trace/replay_command.hpp"
@@ -98,17 +99,18 @@ class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {
         if (app->get_parent() == nullptr) return "Usage: mural COMMAND [OPTIONS]\n";
-        const std::string rest = app->get_name() == "run" || app->get_name() == "app-report"
-                                     ? " -- PROGRAM ARGUMENTS..."
-                                 : app->get_name() == "ctl"    ? " [SESSION] COMMAND..."
-                                 : app->get_name() == "change" ? " [SESSION]"
-                                 : app->get_name() == "page"   ? " [SESSION | COMMAND]"
-                                 : app->get_name() == "bench"  ? " accuracy [-- PROGRAM ARGUMENTS...]"
-                                 : app->get_name() == "replay" || app->get_name() == "dump" ? " FILE"
-                                 : app->get_name() == "trim"                                ? " FILE FRAMES"
-                                 : app->get_name() == "help"                                ? " [COMMAND]"
-                                 : app->get_name() == "call"                                ? " HOST MURAL ARGUMENTS..."
-                                                                                            : "";
+        const std::string rest =
+            app->get_name() == "run" || app->get_name() == "app-report" || app->get_name() == "record-costs"
+                ? " -- PROGRAM ARGUMENTS..."
+            : app->get_name() == "ctl"                                 ? " [SESSION] COMMAND..."
+            : app->get_name() == "change"                              ? " [SESSION]"
+            : app->get_name() == "page"                                ? " [SESSION | COMMAND]"
+            : app->get_name() == "bench"                               ? " accuracy [-- PROGRAM ARGUMENTS...]"
+            : app->get_name() == "replay" || app->get_name() == "dump" ? " FILE"
+            : app->get_name() == "trim"                                ? " FILE FRAMES"
+            : app->get_name() == "help"                                ? " [COMMAND]"
+            : app->get_name() == "call"                                ? " HOST MURAL ARGUMENTS..."
+                                                                       : "";
         return "Usage: mural " + app->get_name() + " [OPTIONS]" + rest + "\n";
     }
     std::string make_option_name(const CLI::Option* option, bool positional) const override {
@@ -376,6 +378,7 @@ private:
             "check the secret.\nExit status: 0, 1 if no daemon was found, 2 for a bad argument.");
         mural::cli::describeDiscover(discover, discover_);
         addAppReport();
+        addRecordCosts();
         addBench();
         addConfig();
         addHelp();
@@ -411,6 +414,22 @@ private:
             return usageError("mural app-report", "unknown option " + rest.front());
         appReportArguments_.program = programOf(*appReport_, line_);
         return mural::cli::appReportCommand(appReportArguments_);
+    }
+
+    void addRecordCosts() {
+        recordCosts_ = &add(
+            "record-costs", "measure what the parts of a program's pictures cost, for mural simulate",
+            [this] { return runRecordCosts(); }, mural::cli::kRecordCostsFooter);
+        recordCosts_->prefix_command();
+        mural::cli::describeRecordCosts(*recordCosts_, recordCostsArguments_);
+    }
+
+    int runRecordCosts() {
+        const auto rest = recordCosts_->remaining();
+        if (!rest.empty() && rest.front().starts_with("-"))
+            return usageError("mural record-costs", "unknown option " + rest.front());
+        recordCostsArguments_.program = programOf(*recordCosts_, line_);
+        return mural::cli::recordCostsCommand(recordCostsArguments_);
     }
 
     void addBench() {
@@ -500,6 +519,8 @@ private:
     CLI::App* call_ = nullptr;
     CLI::App* appReport_ = nullptr;
     mural::cli::AppReportArguments appReportArguments_;
+    CLI::App* recordCosts_ = nullptr;
+    mural::cli::RecordCostsArguments recordCostsArguments_;
     mural::cli::CallArguments callArguments_;
     std::string starterProgram_; // with the native API; empty: mural
     mural::cli::WaitArguments wait_;

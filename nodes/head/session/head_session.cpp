@@ -262,6 +262,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // the node's Bye replaces this value
     }
+    frameTimes_.add(node, message);
     stage->balancer.frameDone(node, message, monotonicNowNs());
     advice_.frameDone(message.flags, stage->plan.nodes[static_cast<size_t>(node)].pass.ranges > 1);
     return recordFrame(node, message, frames_.frameDone(node, message, monotonicNowNs()));

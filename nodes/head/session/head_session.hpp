@@ -48,6 +48,7 @@
 #include "nodes/head/session/session_status.hpp"
 #include "nodes/head/session/slowdown_advice.hpp"
 #include "nodes/head/statistics/frame_statistics.hpp"
+#include "nodes/head/statistics/frame_times_file.hpp"
 #include "nodes/head/statistics/overlay_numbers.hpp"
 #include "nodes/overlay/overlay.hpp"
 #include "nodes/session/session_config.hpp"
@@ -292,6 +293,7 @@ private:
 
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameStatistics statistics_;
+    FrameTimesFile frameTimes_;
     SentFrames sentFrames_;    // for equalizers of zooms
     std::mutex announceMutex_; // orders announcements of the statistics' state and of the overlay; guards overlayMode_
                                // and overlayOfNodes_

@@ -321,6 +321,9 @@ void HeadSession::openTables() {
     sentFrames_.areWanted = balancer()->movesZooms();
     sentFrames_.add = [this](const SentFrame& frame) { balancer()->frameSent(frame); };
     terms.sentFrames = &sentFrames_;
+    if (!config_.frameTimes.empty())
+        if (const auto opened = frameTimes_.open(config_.frameTimes); !opened)
+            log::warning(log::Topic::Session, opened.error().message); // mural run has checked the place
     if (options_.recorder) recording_.beginAtStart(std::move(options_.recorder), aboutTrace());
     ProgramTable::Events events;
     events.came = [this](const CaptureClient& client) {

@@ -144,6 +144,10 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("PATH");
     command.add_option("--report", a.report, "write the final report to this file, as one line of JSON")
         ->type_name("FILE");
+    command
+        .add_option("--frame-times", a.frameTimes,
+                    "write the work of each node for each frame to this file, as lines of JSON")
+        ->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "print only errors");
     command.footer(kRunFooter);
 }

@@ -12,6 +12,9 @@ Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
     c.out = a.out.value_or("");
     if (a.record && a.record->empty()) return badValue("--record", "", "must be a file, such as --record app.mural");
     c.record = a.record.value_or("");
+    if (a.frameTimes && a.frameTimes->empty())
+        return badValue("--frame-times", "", "must be a file, such as --frame-times times.jsonl");
+    c.frameTimes = a.frameTimes.value_or("");
     if (a.overlayInFiles && !a.out)
         return Error{"--overlay-in-files requires --out; add a destination, such as --out shots"};
     if (a.overlayInFiles && c.passes.stereo == StereoMode::Quad)

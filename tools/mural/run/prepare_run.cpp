@@ -60,15 +60,15 @@ std::string earlierPictures(const std::string& out) {
         count, count == 1 ? "" : "s");
 }
 
-Result<void> checkReport(const std::string& file) {
+Result<void> checkResultFile(const std::string& option, const std::string& file) {
     namespace fs = std::filesystem;
     if (file.empty()) return {};
     std::error_code failed;
     const fs::path folder = fs::path(file).has_parent_path() ? fs::path(file).parent_path() : fs::path(".");
-    if (fs::is_directory(file, failed)) return Error{"--report " + file + ": is a folder; give a file name"};
+    if (fs::is_directory(file, failed)) return Error{option + " " + file + ": is a folder; give a file name"};
     const bool there = fs::exists(file, failed);
     if (access(there ? file.c_str() : folder.c_str(), W_OK) == 0) return {};
-    return Error{fmt::format("--report {}: cannot be written: {}; choose another place", file, std::strerror(errno))};
+    return Error{fmt::format("{} {}: cannot be written: {}; choose another place", option, file, std::strerror(errno))};
 }
 
 Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, PreparedRun& run) {

@@ -21,9 +21,9 @@ Result<void> checkOutput(const std::string& out);
 // Returns a message about earlier pictures that stay in the folder next to the new ones. Empty: there are none.
 std::string earlierPictures(const std::string& out);
 
-// Checks whether the file of --report can be written. The report is written at the end, which may be much later.
-// Creates no file.
-Result<void> checkReport(const std::string& file);
+// Checks whether an option's file can be written, because that may happen much later. Creates no file. An empty path is
+// none.
+Result<void> checkResultFile(const std::string& option, const std::string& file);
 
 // Selects the displays of the program and the wall. Starts a private display if the wall or the program needs one.
 Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, PreparedRun& run);

@@ -92,7 +92,10 @@ int runCommand(const RunOptions& options) {
     if (auto r = isNative ? prepareNativeProgram(options, program, run) : prepareCapture(options, program, run); !r)
         return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkOutput(run.config.out); !r) return complain(r.error().message, launch::kExitUsage);
-    if (auto r = checkReport(run.reportFile); !r) return complain(r.error().message, launch::kExitUsage);
+    if (auto r = checkResultFile("--report", run.reportFile); !r)
+        return complain(r.error().message, launch::kExitUsage);
+    if (auto r = checkResultFile("--frame-times", run.config.frameTimes); !r)
+        return complain(r.error().message, launch::kExitUsage);
     if (auto r = chooseDisplay(options, !isNative, run); !r) return complain(r.error().message, launch::kExitUsage);
 
     if (!options.native) createSessionSocket(run);

@@ -41,10 +41,11 @@ Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
         return Error{std::string(a.fullScreen ? "--fullscreen" : "--position") +
                      " requires wall windows; add --display windows"};
     }
-    if (a.native && (a.out.has_value() || a.record.has_value() || c.verifyEvery > 0)) {
+    if (a.native && (a.out.has_value() || a.record.has_value() || a.frameTimes.has_value() || c.verifyEvery > 0)) {
         return Error{std::string(c.verifyEvery > 0 ? "--verify"
                                  : a.out           ? "--out"
-                                                   : "--record") +
+                                 : a.record        ? "--record"
+                                                   : "--frame-times") +
                      " requires captured frames; omit --native"};
     }
     if (c.width > 0 && (c.columns > c.width || c.rows > c.height)) {

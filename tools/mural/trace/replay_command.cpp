@@ -69,7 +69,7 @@ int replayCommand(const RunOptions& options, const std::string& file) {
     run.headEnvironment = run.programEnvironment;
     run.programEnvironment.set("MURAL_SESSION", run.config.session);
     if (auto r = checkOutput(run.config.out); !r) return complain(r.error());
-    if (auto r = checkReport(run.reportFile); !r) return complain(r.error());
+    if (auto r = checkResultFile("--report", run.reportFile); !r) return complain(r.error());
     if (auto r = chooseDisplay(options, false, run); !r) return complain(r.error());
     run.headCommand = {launch::ownBinary(), "head"};
     for (const std::string& notice : options.notices) console.say(notice);
