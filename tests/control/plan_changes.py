@@ -240,12 +240,18 @@ def refused_changes(context):
             status, _, errors = ctl(context, str(run.process.pid), "plan", json.dumps(fields))
             if status != 1 or text not in errors or errors.count("\n") != 1:
                 return "plan %s: status %d, %s" % (fields, status, errors)
+        # A node starts, the other one does not. Neither counts as lost at the end.
+        status, _, errors = change(context, run, "--tiles", "2x1", "--nodes", "localhost,no-host.invalid")
+        if status != 1 or "no-host.invalid" not in errors:
+            return "a change with an unknown host: status %d, %s" % (status, errors)
         status, reply, errors = change(context, run, "--tiles", "2x1", "--dry-run")
         if status != 0 or len(reply["joined"]) != 2 or len(reply["left"]) != 1:
             return "dry run: %s %s" % (reply, errors)
         if nodes_of(context, run) != before:
             return "nodes %s instead of %s" % (nodes_of(context, run), before)
-        return drawing.finish()
+        wrong = drawing.finish()
+        lost = [line for line in run.standard_error + run.standard_output if "did not connect" in line or "was lost" in line]
+        return wrong or (None if not lost else "the report calls nodes of a refused change lost: %s" % lost)
 
 
 @cases.case

@@ -51,9 +51,13 @@ double DensityGrid::cutOf(const Part& part, Axis axis, double share) const {
     if (axis == Axis::Range) v = {part.range.start, 0, part.range.end - part.range.start, 1};
     const double x0 = v.x * w, x1 = (v.x + v.w) * w, y0 = v.y * h, y1 = (v.y + v.h) * h;
     const double from = isY ? y0 : x0, to = isY ? y1 : x1;
-    const auto until = [&](double place) { return isY ? between(x0, x1, y0, place) : between(x0, place, y0, y1); };
-    const double target = until(to) * share;
-    if (!(until(to) > 0) || !(to > from)) return share;
+    const auto line = [&](double place) {
+        return isY ? below(x1, place) - below(x0, place) : below(place, y1) - below(place, y0);
+    };
+    const double before = line(from);
+    const auto until = [&](double place) { return line(place) - before; };
+    const double all = until(to), target = all * share;
+    if (!(all > 0) || !(to > from)) return share;
     // The first edge of cells within the part at which the target is reached.
     auto first = static_cast<long>(std::floor(from)) + 1, end = static_cast<long>(std::ceil(to));
     while (first < end) {

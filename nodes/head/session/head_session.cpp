@@ -512,7 +512,8 @@ SessionNumbers HeadSession::numbers() {
     for (NodeTotals& totals : result.nodes) {
         totals.frames = frames_.framesOf(totals.node);
         totals.hasConnected = facts_[static_cast<size_t>(totals.node)].pid != 0;
-        totals.lost = totals.lost && !stopped_.contains(totals.node); // an operator stopped it in order
+        // An operator stopped it in order, or its change of the plan was refused.
+        totals.lost = totals.lost && !stopped_.contains(totals.node) && !refusedNodes_.contains(totals.node);
     }
     return result;
 }

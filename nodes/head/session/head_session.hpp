@@ -343,6 +343,7 @@ private:
     std::shared_ptr<PendingChange> pending_;  // guarded by mutex_; for the session's thread to begin
     ProvisionalChange provisional_{[this] { revertChange(); }};
     std::deque<SessionConfig> history_;   // guarded by mutex_; configurations before the changes, the latest last
+    std::set<int> refusedNodes_;          // guarded by mutex_; of refused changes of the plan: they never joined
     std::set<int> newNodes_;              // guarded by mutex_; come with a change of the plan, and were no members yet
     std::map<int, int64_t> leavingSince_; // guarded by mutex_; nodes of earlier plans, since their Leave
     const std::map<int, std::string> absences_; // nodes absent at the start, with the reason

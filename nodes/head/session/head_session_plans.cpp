@@ -480,7 +480,7 @@ void HeadSession::forgetNode(int node) {
         overlayOfNodes_.erase(node);
     }
     const std::lock_guard lock(mutex_);
-    newNodes_.erase(node);
+    if (newNodes_.erase(node) > 0) refusedNodes_.insert(node);
     std::vector<std::string>().swap(facts_[static_cast<size_t>(node)].extensions); // the largest part
 }
 
