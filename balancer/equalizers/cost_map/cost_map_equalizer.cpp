@@ -10,9 +10,9 @@ constexpr size_t kCellsPerChild = 64; // enough to place a cut within a few perc
 constexpr size_t kLeastCells = 2048, kMostCells = 8192;
 constexpr double kLeastDensity = 1e-3;   // of the mean: a cell that was free can become dear
 constexpr double kAspectToTurn = 2;      // a cut turns to the other axis above this ratio of sides
-constexpr double kSurpriseToSmooth = .4; // residual from which the map is smoothed completely
+constexpr double kSurpriseToSmooth = .6; // residual from which the map is smoothed completely
 constexpr int kSmoothings = 2;
-constexpr size_t kMemory = 6; // frames with different parts that the map agrees with
+constexpr size_t kMemory = 3; // frames with different parts that the map agrees with
 constexpr int kRecalls = 2;
 constexpr int kFirstPatience = 8, kMostPatience = 64;
 constexpr int kQuietFrames = 4;     // frames of the same parts without a promised gain before a rest
@@ -45,7 +45,7 @@ CostMapEqualizer::CostMapEqualizer(std::string id, const ResolvedConfig& config,
       residuals_(children_.size(), 0),
       patience_(kFirstPatience) {
     addCutParameters(0, {}, {});
-    parameters_.addNumber("smoothing", .5, 0, 1);
+    parameters_.addNumber("smoothing", .3, 0, 1);
     parameters_.addNumber("gain", .02, 0, 1);
     parameters_.addNumber("speed_learning", .1, 0, 1);
 }
