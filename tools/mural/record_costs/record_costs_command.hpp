@@ -15,7 +15,7 @@ struct RecordCostsArguments {
     int ranges = 32;          // parts of the range
     int frames = 100;
     int rounds = 3;
-    int smooth = 9; // frames of a median
+    int smooth = 9;       // frames of a median
     std::string size;     // WxH; empty: the program's own
     double seconds = 120; // limit of each run
     std::vector<std::string> program;
