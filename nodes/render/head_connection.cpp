@@ -317,7 +317,8 @@ void HeadConnection::sendLocked(wire::NodeMessage type, std::span<const std::byt
         if (broken_ || part.empty()) continue;
         broken_ = !connection_->write(part, Deadline::never()).ok(); // no deadline, as in readPayload()
     }
-    if (!broken_) connection_->flush();
+    // FrameDone follows FrameSpans at once. One flush for both wakes the head's reader only once.
+    if (!broken_ && type != wire::NodeMessage::FrameSpans) connection_->flush();
 }
 
 void HeadConnection::sendText(wire::NodeMessage type, const std::string& text) {

@@ -24,8 +24,9 @@ enum class NodeMessage : uint32_t {
     //   and the assignments of the windows follow.
     Turns = 12,
     PackedPicture = 13, // PictureHeader + the rows as encoded by PicturePacker
-    FrameSpans = 14,    // FrameSpansHeader + FrameSpan*, before the frame's FrameDone; only while statistics are on
-    ClockReply = 15,    // ClockReplyMessage: the reply to ClockProbe
+    FrameSpans =
+        14, // FrameSpansHeader + FrameSpan*, directly before the frame's FrameDone; only while statistics are on
+    ClockReply = 15, // ClockReplyMessage: the reply to ClockProbe
     ObjectRequest =
         16,           // u32 client, then a message about distributed objects to the program (objects/wire/messages.hpp)
     OutputProof = 17, // OutputProofMessage: the reply to ProveOutput
