@@ -3,13 +3,15 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/clock.hpp"
+#include "nodes/input/keyboard_map.hpp"
+#include "nodes/input/pointer_place.hpp"
+#include "nodes/input/program_display.hpp"
 #include "tools/mural/page/input/input_lease.hpp"
-#include "tools/mural/page/input/keyboard_map.hpp"
-#include "tools/mural/page/input/pointer_place.hpp"
-#include "tools/mural/page/input/program_display.hpp"
 
 namespace mural::page {
 namespace {
+
+using namespace input;
 
 constexpr int64_t kS = kNsPerS;
 

@@ -66,7 +66,7 @@ TEST(InputEvent, readsEveryKind) {
           R"({"input":{"seq":1,"kind":"wheel","dx":0,"dy":-120}})",
           R"({"input":{"seq":1,"kind":"key","key":"a","code":"KeyA","down":true}})",
           R"({"input":{"seq":1,"kind":"text","text":"pasted"}})", R"({"input":{"seq":4294967295,"kind":"blur"}})"})
-        EXPECT_TRUE(is<InputEvent>(valid)) << valid;
+        EXPECT_TRUE(is<input::InputEvent>(valid)) << valid;
 }
 
 TEST(InputEvent, refusesWhatIsOutOfRange) {

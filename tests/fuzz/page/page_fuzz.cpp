@@ -4,14 +4,14 @@
 #include <string_view>
 
 #include "common/json/json_text.hpp"
+#include "nodes/input/keyboard_map.hpp"
+#include "nodes/input/pointer_place.hpp"
+#include "nodes/input/program_display.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tools/mural/page/access/link_table.hpp"
 #include "tools/mural/page/access/request_origin.hpp"
 #include "tools/mural/page/access/role.hpp"
 #include "tools/mural/page/hub/topic_fan.hpp"
-#include "tools/mural/page/input/keyboard_map.hpp"
-#include "tools/mural/page/input/pointer_place.hpp"
-#include "tools/mural/page/input/program_display.hpp"
 #include "tools/mural/page/protocol/client_message.hpp"
 
 namespace mural::fuzz {
@@ -20,14 +20,14 @@ namespace {
 using page::ClientMessage;
 using page::Role;
 
-uint64_t examine(const page::InputEvent& event) {
+uint64_t examine(const input::InputEvent& event) {
     must(event.x >= 0 && event.x <= 1 && event.y >= 0 && event.y <= 1, "places are fractions");
     must(event.button >= 1 && event.button <= 9, "buttons are 1 to 9");
-    const int pixel = page::pixelAt(event.x, 1920);
+    const int pixel = input::pixelAt(event.x, 1920);
     must(pixel >= 0 && pixel < 1920, "pixels are in the window");
     double rest = 0;
-    must(page::wheelSteps(rest, event.wheelY).size() <= 20, "steps are bounded");
-    return page::keysymOfKey(event.key, event.code) + page::codePointsOf(event.text).size();
+    must(input::wheelSteps(rest, event.wheelY).size() <= 20, "steps are bounded");
+    return input::keysymOfKey(event.key, event.code) + input::codePointsOf(event.text).size();
 }
 
 uint64_t examine(const page::RequestMessage& request) {
@@ -62,7 +62,7 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     const bool isKnown = hosts.isKnownHost(bytes);
     must(!isKnown || page::hostName(bytes) == "localhost", "one host is known");
     if (hosts.isOwnOrigin(bytes, bytes)) ++successes;
-    return successes + page::cookieIn(bytes).size() + page::variableIn(bytes, "DISPLAY").size();
+    return successes + input::cookieIn(bytes).size() + input::variableIn(bytes, "DISPLAY").size();
 }
 
 } // namespace mural::fuzz

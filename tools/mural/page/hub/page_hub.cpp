@@ -11,10 +11,10 @@
 #include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/control/control_operations.hpp"
+#include "nodes/input/program_input.hpp"
 #include "tools/mural/page/access/link_store.hpp"
 #include "tools/mural/page/hub/output_list.hpp"
 #include "tools/mural/page/hub/page_replies.hpp"
-#include "tools/mural/page/input/program_input.hpp"
 
 namespace mural::page {
 
@@ -56,7 +56,7 @@ PageHub::PageHub(boost::asio::io_context& io, HubConfig config, std::function<vo
       slow_(std::move(slow)),
       pictures_(io, socketBeside(config_.controlPath, "pictures"), config_.pictures),
       lease_(config_.inputMode),
-      input_(std::make_unique<ProgramInput>([&io, this](int viewer, uint32_t number) {
+      input_(std::make_unique<input::ProgramInput>([&io, this](int viewer, uint32_t number) {
           boost::asio::post(io, [this, viewer, number] { pictures_.inputReached(viewer, number); });
       })),
       cursor_(std::make_unique<CursorWatch>([&io, this](const CursorState& state) {

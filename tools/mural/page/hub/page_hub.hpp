@@ -18,6 +18,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "common/base/result.hpp"
+#include "nodes/input/program_display.hpp"
 #include "tools/mural/page/access/failure_limit.hpp"
 #include "tools/mural/page/access/link_table.hpp"
 #include "tools/mural/page/access/role.hpp"
@@ -25,15 +26,17 @@
 #include "tools/mural/page/hub/topic_fan.hpp"
 #include "tools/mural/page/hub/viewer_socket.hpp"
 #include "tools/mural/page/input/input_lease.hpp"
-#include "tools/mural/page/input/program_display.hpp"
 #include "tools/mural/page/pictures/picture_hub.hpp"
 #include "tools/mural/page/protocol/client_message.hpp"
 #include "tools/mural/page/protocol/rate_limit.hpp"
 
+namespace mural::input {
+class ProgramInput;
+}
+
 namespace mural::page {
 
 class CursorWatch;
-class ProgramInput;
 
 inline constexpr size_t kMaxViewers = 64;
 
@@ -120,7 +123,7 @@ private:
 
     void take(int viewer, const HelloMessage& hello);
     void take(int viewer, const RequestMessage& request);
-    void take(int viewer, const InputEvent& event);
+    void take(int viewer, const input::InputEvent& event);
     void take(int viewer, const AckMessage& ack);
     void take(int viewer, const PingMessage& ping);
     void take(int viewer, const InvalidMessage& invalid);
@@ -152,10 +155,10 @@ private:
     TopicFan fan_;
     PictureHub pictures_;
     InputLease lease_;
-    std::unique_ptr<ProgramInput> input_;
+    std::unique_ptr<input::ProgramInput> input_;
     std::unique_ptr<CursorWatch> cursor_;
-    std::optional<ProgramDisplay> display_; // of the program; nullopt: unknown, or of a user
-    int knownHolder_ = 0;                   // announced to the viewers
+    std::optional<input::ProgramDisplay> display_; // of the program; nullopt: unknown, or of a user
+    int knownHolder_ = 0;                          // announced to the viewers
     int64_t programAskedNs_ = 0;
     std::string inputProblem_; // why the program gets no input; empty: it gets it
     uint64_t inputs_ = 0, droppedInputs_ = 0;

@@ -5,10 +5,10 @@
 #include "common/base/clock.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/control/control_operations.hpp"
+#include "nodes/input/program_input.hpp"
 #include "tools/mural/page/hub/page_hub.hpp"
 #include "tools/mural/page/hub/page_replies.hpp"
 #include "tools/mural/page/input/cursor_watch.hpp"
-#include "tools/mural/page/input/program_input.hpp"
 
 namespace mural::page {
 
@@ -26,7 +26,7 @@ uint32_t numberOf(const nlohmann::json& object, const char* name) {
 
 } // namespace
 
-void PageHub::take(int number, const InputEvent& event) {
+void PageHub::take(int number, const input::InputEvent& event) {
     Viewer& viewer = viewers_.at(number);
     const int64_t nowNs = monotonicNowNs();
     if (viewer.link.role < Role::Input) {
@@ -34,7 +34,7 @@ void PageHub::take(int number, const InputEvent& event) {
         return;
     }
     findProgram(nowNs);
-    const bool takes = event.kind == InputKind::Down || (event.kind == InputKind::Touch && event.isDown);
+    const bool takes = event.kind == input::InputKind::Down || (event.kind == input::InputKind::Touch && event.isDown);
     const bool passes = viewer.inputs.take(nowNs) &&
                         lease_.passes(number, viewer.link.role, takes, input_->holdsButtons(), nowNs) &&
                         input_->hasDisplay() && input_->send(number, event);
@@ -55,7 +55,8 @@ void PageHub::findProgram(int64_t nowNs) {
 void PageHub::takeProgram(const Json& program) {
     const auto pid = static_cast<pid_t>(numberOf(program, "pid"));
     const auto runPid = static_cast<pid_t>(numberOf(config_.hello, "runPid"));
-    auto display = programDisplay(pid, runPid, program.value("display", std::string()), numberOf(program, "window"));
+    auto display =
+        input::programDisplay(pid, runPid, program.value("display", std::string()), numberOf(program, "window"));
     std::string problem;
     if (!display)
         problem = display.error().message;

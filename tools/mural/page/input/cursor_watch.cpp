@@ -7,7 +7,7 @@
 #include <xcb/xfixes.h>
 
 #include "common/base/clock.hpp"
-#include "tools/mural/page/input/x_display.hpp"
+#include "nodes/input/x_display.hpp"
 #include "tools/mural/page/pictures/encode_picture.hpp"
 
 namespace mural::page {
@@ -22,7 +22,7 @@ constexpr size_t kMaxShapeSide = 256;
 
 // A connection to one display.
 struct CursorWatch::Eye {
-    XConnection connection;
+    input::XConnection connection;
     xcb_window_t window = 0;
     bool isGiven = false, hasShapes = false;
     int width = 0, height = 0; // of the window
@@ -30,9 +30,9 @@ struct CursorWatch::Eye {
     uint8_t firstEvent = 0;
     CursorState state;
 
-    static std::unique_ptr<Eye> open(const ProgramDisplay& display) {
+    static std::unique_ptr<Eye> open(const input::ProgramDisplay& display) {
         auto eye = std::make_unique<Eye>();
-        eye->connection = connectTo(display);
+        eye->connection = input::connectTo(display);
         if (!eye->connection) return nullptr;
         eye->window = display.window;
         eye->isGiven = display.window != 0;
@@ -43,18 +43,18 @@ struct CursorWatch::Eye {
     void beginShapes() {
         const auto* extension = xcb_get_extension_data(connection.get(), &xcb_xfixes_id);
         if (extension == nullptr || extension->present == 0) return;
-        const Answer<xcb_xfixes_query_version_reply_t> version(xcb_xfixes_query_version_reply(
+        const input::Answer<xcb_xfixes_query_version_reply_t> version(xcb_xfixes_query_version_reply(
             connection.get(), xcb_xfixes_query_version(connection.get(), 2, 0), nullptr));
         if (!version) return;
         hasShapes = true;
         firstEvent = extension->first_event;
-        xcb_xfixes_select_cursor_input(connection.get(), rootOf(connection.get()),
+        xcb_xfixes_select_cursor_input(connection.get(), input::rootOf(connection.get()),
                                        XCB_XFIXES_CURSOR_NOTIFY_MASK_DISPLAY_CURSOR);
         readShape();
     }
 
     void readShape() {
-        const Answer<xcb_xfixes_get_cursor_image_reply_t> image(xcb_xfixes_get_cursor_image_reply(
+        const input::Answer<xcb_xfixes_get_cursor_image_reply_t> image(xcb_xfixes_get_cursor_image_reply(
             connection.get(), xcb_xfixes_get_cursor_image(connection.get()), nullptr));
         if (!image || image->width == 0 || image->height == 0 || image->width > kMaxShapeSide ||
             image->height > kMaxShapeSide)
@@ -71,19 +71,19 @@ struct CursorWatch::Eye {
     // Returns false if the connection is lost.
     bool look() {
         bool isNew = false;
-        while (const Answer<xcb_generic_event_t> event{xcb_poll_for_event(connection.get())})
+        while (const input::Answer<xcb_generic_event_t> event{xcb_poll_for_event(connection.get())})
             isNew = isNew || (event->response_type & 0x7f) == firstEvent + XCB_XFIXES_CURSOR_NOTIFY;
         if (isNew && hasShapes) readShape();
         const int64_t nowNs = monotonicNowNs();
         if (windowNs == 0 || nowNs - windowNs > kWindowEveryNs) {
             windowNs = nowNs;
-            if (!isGiven) window = largestWindow(connection.get());
-            const Answer<xcb_get_geometry_reply_t> geometry(
+            if (!isGiven) window = input::largestWindow(connection.get());
+            const input::Answer<xcb_get_geometry_reply_t> geometry(
                 xcb_get_geometry_reply(connection.get(), xcb_get_geometry(connection.get(), window), nullptr));
             width = geometry ? geometry->width : 0;
             height = geometry ? geometry->height : 0;
         }
-        const Answer<xcb_query_pointer_reply_t> pointer(
+        const input::Answer<xcb_query_pointer_reply_t> pointer(
             xcb_query_pointer_reply(connection.get(), xcb_query_pointer(connection.get(), window), nullptr));
         state.isInside = pointer && width > 0 && height > 0 && pointer->win_x >= 0 && pointer->win_y >= 0 &&
                          pointer->win_x < width && pointer->win_y < height;
@@ -108,7 +108,7 @@ CursorWatch::~CursorWatch() {
     thread_.join();
 }
 
-void CursorWatch::watch(std::optional<ProgramDisplay> display) {
+void CursorWatch::watch(std::optional<input::ProgramDisplay> display) {
     const std::lock_guard lock(mutex_);
     if (wanted_ == display) return;
     wanted_ = std::move(display);
@@ -117,7 +117,7 @@ void CursorWatch::watch(std::optional<ProgramDisplay> display) {
 
 void CursorWatch::work() {
     std::unique_ptr<Eye> eye;
-    std::optional<ProgramDisplay> of;
+    std::optional<input::ProgramDisplay> of;
     CursorState told;
     std::unique_lock lock(mutex_);
     while (!stop_) {
@@ -130,7 +130,7 @@ void CursorWatch::work() {
             changed_.wait_for(lock, std::chrono::seconds(60));
             continue;
         }
-        const ProgramDisplay display = *of;
+        const input::ProgramDisplay display = *of;
         lock.unlock();
         if (!eye) eye = Eye::open(display);
         const bool isOpen = eye != nullptr;

@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "tools/mural/page/input/program_display.hpp"
+#include "nodes/input/program_display.hpp"
 
 namespace mural::page {
 
@@ -33,7 +33,7 @@ public:
     ~CursorWatch();
 
     // nullopt: nobody watches.
-    void watch(std::optional<ProgramDisplay> display);
+    void watch(std::optional<input::ProgramDisplay> display);
 
 private:
     struct Eye;
@@ -42,7 +42,7 @@ private:
     const std::function<void(const CursorState& state)> onChange_;
     std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    std::optional<ProgramDisplay> wanted_;
+    std::optional<input::ProgramDisplay> wanted_;
     int openFd_ = -1; // of the connection; -1: none
     bool stop_ = false;
     std::thread thread_;

@@ -38,7 +38,8 @@ struct InvalidMessage {
     std::string problem;
 };
 
-using ClientMessage = std::variant<InvalidMessage, HelloMessage, RequestMessage, InputEvent, AckMessage, PingMessage>;
+using ClientMessage =
+    std::variant<InvalidMessage, HelloMessage, RequestMessage, input::InputEvent, AckMessage, PingMessage>;
 
 [[nodiscard]] ClientMessage parseClientMessage(std::string_view text);
 

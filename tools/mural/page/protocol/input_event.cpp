@@ -11,6 +11,8 @@ namespace mural::page {
 namespace {
 
 using Json = nlohmann::json;
+using input::InputEvent;
+using input::InputKind;
 
 constexpr std::array<std::string_view, 8> kInputKinds = {"move", "down", "up", "wheel", "key", "text", "touch", "blur"};
 constexpr size_t kMaxKeyBytes = 64;
@@ -70,16 +72,16 @@ bool readMember(std::string_view name, const Json& value, InputEvent& event) {
 
 } // namespace
 
-std::optional<InputEvent> inputEventOf(const Json& input) {
-    if (!input.is_object() || !input.contains("seq") || !input.contains("kind")) return std::nullopt;
+std::optional<InputEvent> inputEventOf(const Json& message) {
+    if (!message.is_object() || !message.contains("seq") || !message.contains("kind")) return std::nullopt;
     InputEvent event;
-    for (const auto& [name, value] : input.items())
+    for (const auto& [name, value] : message.items())
         if (!readMember(name, value, event)) return std::nullopt;
-    event.hasPlace = input.contains("x") && input.contains("y");
+    event.hasPlace = message.contains("x") && message.contains("y");
     const bool needsPlace = event.kind == InputKind::Move || event.kind == InputKind::Down ||
                             event.kind == InputKind::Up || (event.kind == InputKind::Touch && event.isDown);
     if (needsPlace && !event.hasPlace) return std::nullopt;
-    if (event.kind == InputKind::Key && (event.key.empty() || !input.contains("down"))) return std::nullopt;
+    if (event.kind == InputKind::Key && (event.key.empty() || !message.contains("down"))) return std::nullopt;
     return event;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace mural::page {
+namespace mural::input {
 
 // Returns the pixel at a fraction of a side with that number of pixels.
 [[nodiscard]] inline int pixelAt(double fraction, int pixels) {
@@ -23,4 +23,4 @@ namespace mural::page {
     return std::vector<int>(static_cast<size_t>(std::abs(whole)), whole < 0 ? -1 : 1);
 }
 
-} // namespace mural::page
+} // namespace mural::input

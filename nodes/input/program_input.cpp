@@ -1,10 +1,10 @@
-#include "tools/mural/page/input/program_input.hpp"
+#include "nodes/input/program_input.hpp"
 
 #include <chrono>
 #include <sys/socket.h>
 #include <utility>
 
-namespace mural::page {
+namespace mural::input {
 
 ProgramInput::ProgramInput(std::function<void(int viewer, uint32_t number)> onSent)
     : onSent_(std::move(onSent)), thread_([this] { work(); }) {}
@@ -91,4 +91,4 @@ void ProgramInput::perform(std::unique_ptr<DisplayInput>& input, const Entry& en
     holdsButtons_ = input && input->holdsButtons();
 }
 
-} // namespace mural::page
+} // namespace mural::input

@@ -1,9 +1,9 @@
-#include "tools/mural/page/input/program_display.hpp"
+#include "nodes/input/program_display.hpp"
 
 #include <fstream>
 #include <iterator>
 
-namespace mural::page {
+namespace mural::input {
 
 Result<ProgramDisplay> programDisplay(pid_t program, pid_t runPid, std::string name, uint32_t window) {
     std::ifstream file("/proc/" + std::to_string(program) + "/environ", std::ios::binary);
@@ -50,4 +50,4 @@ std::string cookieIn(std::string_view bytes) {
     return cookie;
 }
 
-} // namespace mural::page
+} // namespace mural::input

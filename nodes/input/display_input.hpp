@@ -8,17 +8,18 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <xcb/xcb.h>
 
 #include "common/base/result.hpp"
-#include "tools/mural/page/input/keyboard_map.hpp"
-#include "tools/mural/page/input/program_display.hpp"
-#include "tools/mural/page/input/x_display.hpp"
-#include "tools/mural/page/protocol/input_event.hpp"
+#include "nodes/input/keyboard_map.hpp"
+#include "nodes/input/program_display.hpp"
+#include "nodes/input/x_display.hpp"
+#include "nodes/input/input_event.hpp"
 
-namespace mural::page {
+namespace mural::input {
 
 class DisplayInput {
 public:
@@ -45,6 +46,9 @@ private:
     void button(uint8_t number, bool isDown);
     void wheel(double& sum, double add, uint8_t less, uint8_t more);
     void key(const InputEvent& event);
+    void resize(int width, int height);
+    void close();
+    xcb_atom_t atomOf(std::string_view name);
     void type(const std::string& text);
     KeyPlace placeOf(Keysym keysym);
     void tap(Keysym keysym);
@@ -67,4 +71,4 @@ private:
     double wheelX_ = 0, wheelY_ = 0; // in 1/120 of a step
 };
 
-} // namespace mural::page
+} // namespace mural::input

@@ -7,9 +7,9 @@
 
 #include <xcb/xcb.h>
 
-#include "tools/mural/page/input/program_display.hpp"
+#include "nodes/input/program_display.hpp"
 
-namespace mural::page {
+namespace mural::input {
 
 struct FreeReply {
     void operator()(void* reply) const { std::free(reply); }
@@ -27,4 +27,4 @@ using XConnection = std::unique_ptr<xcb_connection_t, Disconnect>;
 // Returns the largest window that is shown directly on the root.
 [[nodiscard]] xcb_window_t largestWindow(xcb_connection_t* connection);
 
-} // namespace mural::page
+} // namespace mural::input

@@ -1,13 +1,13 @@
-#include "tools/mural/page/input/display_input.hpp"
+#include "nodes/input/display_input.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <xcb/xtest.h>
 
 #include "common/base/clock.hpp"
-#include "tools/mural/page/input/pointer_place.hpp"
+#include "nodes/input/pointer_place.hpp"
 
-namespace mural::page {
+namespace mural::input {
 
 namespace {
 
@@ -116,8 +116,38 @@ void DisplayInput::send(const InputEvent& event) {
     case InputKind::Key: key(event); break;
     case InputKind::Text: type(event.text); break;
     case InputKind::Blur: releaseAll(); break;
+    case InputKind::Size: resize(event.width, event.height); break;
+    case InputKind::Close: close(); break;
     }
     xcb_flush(connection_.get());
+}
+
+// Requests a size of the program's window, as a user does with a window manager.
+void DisplayInput::resize(int width, int height) {
+    if (!placeWindow() || window_ == root_ || width <= 0 || height <= 0) return;
+    const std::array<uint32_t, 2> size{static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+    xcb_configure_window(connection_.get(), window_, XCB_CONFIG_WINDOW_WIDTH | XCB_CONFIG_WINDOW_HEIGHT, size.data());
+    width_ = 0; // the next event asks for the place again
+}
+
+xcb_atom_t DisplayInput::atomOf(std::string_view name) {
+    const Answer<xcb_intern_atom_reply_t> reply(xcb_intern_atom_reply(
+        connection_.get(), xcb_intern_atom(connection_.get(), 0, static_cast<uint16_t>(name.size()), name.data()),
+        nullptr));
+    return reply ? reply->atom : xcb_atom_t{XCB_ATOM_NONE};
+}
+
+// Requests the end of the program's window (ICCCM 4.2.8.1). Programs without that protocol ignore the message.
+void DisplayInput::close() {
+    if (!placeWindow() || window_ == root_) return;
+    xcb_client_message_event_t message{};
+    message.response_type = XCB_CLIENT_MESSAGE;
+    message.format = 32;
+    message.window = window_;
+    message.type = atomOf("WM_PROTOCOLS");
+    message.data.data32[0] = atomOf("WM_DELETE_WINDOW");
+    message.data.data32[1] = XCB_CURRENT_TIME;
+    xcb_send_event(connection_.get(), 0, window_, XCB_EVENT_MASK_NO_EVENT, reinterpret_cast<const char*>(&message));
 }
 
 bool DisplayInput::isHeld(Keysym keysym) const {
@@ -170,7 +200,7 @@ void DisplayInput::key(const InputEvent& event) {
         return;
     }
     if (held_.contains(name)) return; // the X server repeats held keys itself
-    const Keysym keysym = keysymOfKey(event.key, event.code);
+    const Keysym keysym = event.keysym != kNoKeysym ? event.keysym : keysymOfKey(event.key, event.code);
     const KeyPlace place = placeOf(keysym);
     if (keysym == kNoKeysym || place.keycode == 0) return;
     const bool isModifier = keysym == kShift || keysym == kShiftRight || keysym == kLevel3 ||
@@ -211,4 +241,4 @@ void DisplayInput::releaseAll() {
     xcb_flush(connection_.get());
 }
 
-} // namespace mural::page
+} // namespace mural::input

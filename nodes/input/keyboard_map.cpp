@@ -1,10 +1,10 @@
-#include "tools/mural/page/input/keyboard_map.hpp"
+#include "nodes/input/keyboard_map.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-namespace mural::page {
+namespace mural::input {
 
 namespace {
 
@@ -131,4 +131,4 @@ void KeyboardMap::bind(uint8_t keycode, Keysym keysym) {
         keysyms_[i] = keysym;
 }
 
-} // namespace mural::page
+} // namespace mural::input

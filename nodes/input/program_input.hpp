@@ -12,9 +12,9 @@
 #include <string>
 #include <thread>
 
-#include "tools/mural/page/input/display_input.hpp"
+#include "nodes/input/display_input.hpp"
 
-namespace mural::page {
+namespace mural::input {
 
 class ProgramInput {
 public:
@@ -60,4 +60,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace mural::page
+} // namespace mural::input

@@ -8,7 +8,7 @@
 
 #include "common/base/result.hpp"
 
-namespace mural::page {
+namespace mural::input {
 
 struct ProgramDisplay {
     std::string name;       // ":99"
@@ -28,4 +28,4 @@ Result<ProgramDisplay> programDisplay(pid_t program, pid_t runPid, std::string n
 // Returns the cookie of the last entry of an authority file; empty: it has none. Pure.
 [[nodiscard]] std::string cookieIn(std::string_view authorityFile);
 
-} // namespace mural::page
+} // namespace mural::input

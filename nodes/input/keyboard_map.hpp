@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace mural::page {
+namespace mural::input {
 
 using Keysym = uint32_t;
 inline constexpr Keysym kNoKeysym = 0;
@@ -53,4 +53,4 @@ private:
     std::vector<Keysym> keysyms_;
 };
 
-} // namespace mural::page
+} // namespace mural::input

@@ -1,10 +1,10 @@
-#include "tools/mural/page/input/x_display.hpp"
+#include "nodes/input/x_display.hpp"
 
 #include <fstream>
 #include <iterator>
 #include <string>
 
-namespace mural::page {
+namespace mural::input {
 
 namespace {
 
@@ -53,4 +53,4 @@ xcb_window_t largestWindow(xcb_connection_t* connection) {
     return largest;
 }
 
-} // namespace mural::page
+} // namespace mural::input
