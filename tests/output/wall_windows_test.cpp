@@ -1,9 +1,13 @@
 // Wall windows on a private X server: position, size, contents.
 #include "nodes/output/windows/wall_windows.hpp"
+#include "nodes/input/display_input.hpp"
 #include "nodes/overlay/overlay_picture.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstring>
+#include <mutex>
+#include <optional>
 #include <poll.h>
 
 #include <EGL/egl.h>
@@ -350,6 +354,60 @@ TEST_F(Walls, areExactWithAuto) {
     show(1, b.view());
     expectOnScreen(10, 10, a.view());
     expectOnScreen(200, 0, b.view());
+}
+
+// The upper left tile of a wall of 240x180 pixels.
+TEST_F(Walls, reportInputWithItsPlaceOnTheWall) {
+    startServer();
+    std::mutex mutex; // guards events
+    std::vector<input::InputEvent> events;
+    WallWindowsConfig config = configFor({{{0, 90, 120, 90}, 30, 40, "wall", -1}}, WallDrawing::XPut);
+    config.wall.wallWidth = 240;
+    config.wall.wallHeight = 180;
+    config.onInput = [&](const input::InputEvent& event) {
+        const std::lock_guard lock(mutex);
+        events.push_back(event);
+    };
+    openWall(config);
+    show(0, noisePicture(120, 90, 1).view());
+    const auto find = [&](auto isWanted) -> std::optional<input::InputEvent> {
+        const std::lock_guard lock(mutex);
+        const auto found = std::ranges::find_if(events, isWanted);
+        return found == events.end() ? std::nullopt : std::optional(*found);
+    };
+    auto hand = input::DisplayInput::open({server_->displayName(), "", false, findWindow(120, 90)});
+    ASSERT_TRUE(hand) << hand.error().message;
+    input::InputEvent click;
+    click.kind = input::InputKind::Down;
+    click.hasPlace = true;
+    click.x = 0.25, click.y = 0.5; // of the window
+    click.button = 3;
+    (*hand)->send(click);
+    const auto isDown = [](const auto& event) { return event.kind == input::InputKind::Down; };
+    ASSERT_TRUE(becomesTrue([&] { return find(isDown).has_value(); }));
+    EXPECT_EQ(find(isDown)->button, 3);
+    EXPECT_NEAR(find(isDown)->x, 30.0 / 240, 1e-9);
+    EXPECT_NEAR(find(isDown)->y, 45.0 / 180, 1e-9);
+    input::InputEvent wheel;
+    wheel.kind = input::InputKind::Wheel;
+    wheel.wheelY = 120;
+    (*hand)->send(wheel);
+    const auto isWheel = [](const auto& event) { return event.kind == input::InputKind::Wheel; };
+    ASSERT_TRUE(becomesTrue([&] { return find(isWheel).has_value(); }));
+    EXPECT_EQ(find(isWheel)->wheelY, 120);
+    input::InputEvent key;
+    key.kind = input::InputKind::Key;
+    key.key = "A", key.code = "KeyA"; // needs Shift
+    key.isDown = true;
+    (*hand)->send(key);
+    const auto isKey = [](const auto& event) { return event.keysym == 'A' && event.isDown; };
+    EXPECT_TRUE(becomesTrue([&] { return find(isKey).has_value(); }));
+    client_->resizeWindow(findWindow(120, 90), 160, 100);
+    const auto isSize = [](const auto& event) { return event.kind == input::InputKind::Size && event.width == 160; };
+    EXPECT_TRUE(becomesTrue([&] { return find(isSize).has_value(); }));
+    (*hand)->send({.kind = input::InputKind::Close});
+    EXPECT_TRUE(becomesTrue([&] { return wall_->closeRequested(); }));
+    wall_.reset(); // its thread uses the mutex
 }
 
 TEST_F(Walls, reportMissingParts) {

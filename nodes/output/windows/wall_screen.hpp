@@ -10,6 +10,7 @@
 #include "nodes/output/windows/overlay_layer.hpp"
 #include "nodes/output/windows/texture_blit.hpp"
 #include "nodes/output/windows/wall_windows.hpp"
+#include "nodes/output/windows/window_input.hpp"
 
 struct GLFWwindow;
 
@@ -28,7 +29,8 @@ public:
         bool waitForRefresh = false;
         int64_t timeoutMs = 0;
         std::shared_ptr<const Overlay> overlay; // null: none
-        OverlayPlace onWall;                    // for the overlay
+        OverlayPlace onWall;                    // for the overlay and the input
+        WindowInput::OnInput onInput;           // empty: none
     };
 
     static Result<std::unique_ptr<WallWindow>> open(GlfwSession& session, const Options& options);
@@ -40,7 +42,7 @@ public:
     WallWindow& operator=(const WallWindow&) = delete;
     ~WallWindow();
 
-    // onWall: for the overlay.
+    // onWall: for the overlay and the input.
     Result<void> move(const PixelViewport& place, OverlayPlace onWall);
 
     // Swaps the picture with the previous one, whose memory can be reused. right: for windows with a buffer per eye;
@@ -53,6 +55,8 @@ public:
     Result<void> redrawIfNeeded();
     [[nodiscard]] bool closeRequested() const;
     [[nodiscard]] std::string drawnBy() const;
+    // For the callbacks of GLFW. Null: the window takes no input.
+    [[nodiscard]] WindowInput* input() { return input_.get(); }
 
 private:
     WallWindow(GlfwSession& session, std::shared_ptr<const Overlay> overlay)
@@ -80,6 +84,7 @@ private:
     bool stereo_ = false;
     std::unique_ptr<TextureBlit> blit_; // one of the two is set
     std::unique_ptr<AppWindow> painter_;
+    std::unique_ptr<WindowInput> input_; // null: none
     bool uncovered_ = false;
 };
 

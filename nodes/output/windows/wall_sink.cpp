@@ -5,8 +5,13 @@
 
 namespace mural {
 
+WallSink::WallSink(WallWindowsConfig config, const TileGrid& grid)
+    : WallSink(std::move(config), [grid](int width, int height) {
+          return windowsOfTiles(grid, {0, 0, grid.columns, grid.rows}, width, height);
+      }) {}
+
 Result<void> WallSink::reopen(int width, int height) {
-    config_.tiles = windowsOfTiles(grid_, {0, 0, grid_.columns, grid_.rows}, width, height);
+    config_.tiles = arrange_(width, height);
     config_.wall.wallWidth = width;
     config_.wall.wallHeight = height;
     windows_.reset(); // one set per process

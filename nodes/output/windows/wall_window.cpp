@@ -47,6 +47,9 @@ void setHints(const WallWindow::Options& options) {
     // The program keeps the keyboard and pointer focus, and full-screen windows stay when another window is used.
     glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
     glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
+    if (options.onInput)
+        for (const int hint : {GLFW_DECORATED, GLFW_RESIZABLE, GLFW_FOCUSED, GLFW_FOCUS_ON_SHOW})
+            glfwWindowHint(hint, GLFW_TRUE);
     glfwWindowHint(GLFW_CENTER_CURSOR, GLFW_FALSE);
     glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
     if (!options.openGl) {
@@ -96,6 +99,10 @@ Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session, const
     glfwSetWindowRefreshCallback(window->window_, [](GLFWwindow* uncovered) {
         static_cast<WallWindow*>(glfwGetWindowUserPointer(uncovered))->uncovered_ = true;
     });
+    if (options.onInput) {
+        window->input_ = std::make_unique<WindowInput>(options.onInput, window->onWall_);
+        attachInput(window->window_, options.fullScreen);
+    }
     if (options.fullScreen)
         glfwSetInputMode(window->window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
     else
@@ -165,6 +172,7 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
 
 Result<void> WallWindow::move(const PixelViewport& place, OverlayPlace onWall) {
     onWall_ = std::move(onWall);
+    if (input_) input_->place(onWall_);
     if (fullScreen_) return {};
     glfwSetWindowPos(window_, place.x, place.y);
     resize(std::max(place.w, 1), std::max(place.h, 1));
@@ -175,6 +183,7 @@ void WallWindow::resize(int width, int height) {
     if (fullScreen_ || (width == wantedWidth_ && height == wantedHeight_)) return;
     wantedWidth_ = width;
     wantedHeight_ = height;
+    if (input_) input_->expectSize(width, height);
     glfwSetWindowSize(window_, width, height);
     const Deadline deadline = Deadline::inMs(kResizeMs);
     while (session_.sync()) {

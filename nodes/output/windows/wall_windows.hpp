@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 
 #include "common/geometry/pixel_viewport.hpp"
 #include "common/base/result.hpp"
+#include "nodes/input/input_event.hpp"
 #include "nodes/output/picture.hpp"
 #include "nodes/overlay/overlay.hpp"
 
@@ -49,7 +51,10 @@ struct WallWindowsConfig {
     bool stereo = false; // requests a buffer per eye, which needs OpenGl
     // Drawn over the pictures when they are shown; null: none. A change of its mode appears within kOverlayMs.
     std::shared_ptr<const Overlay> overlay;
-    OverlayPlace wall;          // the size of the wall; each window has its own title and part
+    OverlayPlace wall; // the size of the wall; each window has its own title and part
+    // Takes events of the windows, with places on the wall. Called by the windows' thread; must not block. Empty: the
+    // windows take no input, and have no borders.
+    std::function<void(const input::InputEvent& event)> onInput;
     bool waitForRefresh = true; // OpenGl: swaps at the monitor's refresh (once per showAll)
     int64_t openTimeoutMs = 20'000;
     int64_t showTimeoutMs = 5'000; // for show, showAll, arrange, and closing
