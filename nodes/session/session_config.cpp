@@ -116,6 +116,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("saveFrames", c.saveFrames, 1);
     visit("record", c.record);
     visit("frameTimes", c.frameTimes);
+    visit("sends", c.sends);
     visit("width", c.width, 0);
     visit("height", c.height, 0);
     visit("fullScreen", c.fullScreen);

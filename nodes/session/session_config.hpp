@@ -39,12 +39,12 @@ struct SessionConfig {
     int tileWidth = 0, tileHeight = 0; // --tile-queue: tile size in pixels, replaces columns and rows; 0: no queue
     int chunks = 0; // --chunk-queue: number of chunks of a picture's draws, for nodes of --db; 0: fixed shares
     balance::Balance balance = balance::Balance::AsInFile; // --balance: the equalizers of areas and ranges
-    int localNodes = 0;                    // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
-    std::vector<std::string> hosts;        // --nodes
-    std::vector<std::string> spareHosts;   // --spare-nodes: hosts that take over the nodes of a lost one, in this order
-    std::vector<std::string> movedHosts;   // "FROM=TO": nodes of FROM run on TO; one entry per replacement, in order
-    std::string launchCommand = "ssh";     // --launch: ssh, slurm, pmix, or a command that runs a command on a host
-    std::string launchSecret;              // --secret: file with the secret of waiting nodes (@NAME); empty: none
+    int localNodes = 0;                  // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
+    std::vector<std::string> hosts;      // --nodes
+    std::vector<std::string> spareHosts; // --spare-nodes: hosts that take over the nodes of a lost one, in this order
+    std::vector<std::string> movedHosts; // "FROM=TO": nodes of FROM run on TO; one entry per replacement, in order
+    std::string launchCommand = "ssh";   // --launch: ssh, slurm, pmix, or a command that runs a command on a host
+    std::string launchSecret; // --secret: file with the secret of waiting nodes (@NAME) and remote walls; empty: none
     int64_t startTimeoutMs = 30'000;       // --start-timeout: for the connections of all nodes, then for their GL
     std::string stream = "auto";           // --stream: transport to other machines: auto, tcp, rsp://…
     DeltaMode delta = DeltaMode::Auto;     // --delta: delta coding
@@ -79,6 +79,7 @@ struct SessionConfig {
     std::vector<int64_t> saveFrames;        // --save 1,30,90: saved frames; empty: all
     std::string record;                     // --record: file of the programs' streams; empty: none
     std::string frameTimes;                 // --frame-times: file of the nodes' work per frame; empty: none
+    std::vector<std::string> sends;         // --send: remote walls (nodes/remote_wall/wall_target.hpp)
     int width = 0, height = 0;              // --size; 0: the program's size
     bool fullScreen = false;                // --fullscreen: wall windows without borders, one per monitor
     int windowX = 0, windowY = 0;           // --position of the wall's upper left corner

@@ -25,6 +25,7 @@ TEST(SessionConfig, roundTripsEveryField) {
     c.frames = int64_t{1} << 40;
     c.out = "out \"quoted\"";
     c.saveFrames = {1, 30, 90};
+    c.sends = {"museum=wall.example:4281,codec=auto"};
     c.width = 640;
     c.height = 480;
     c.fullScreen = true;
@@ -41,6 +42,7 @@ TEST(SessionConfig, roundTripsEveryField) {
     ASSERT_TRUE(back.ok()) << back.error().message;
     EXPECT_EQ(toJson(*back), json);
     EXPECT_EQ(back.value().saveFrames, c.saveFrames);
+    EXPECT_EQ(back.value().sends, c.sends);
     EXPECT_EQ(back.value().hosts, c.hosts);
     EXPECT_EQ(back.value().display, Display::App);
     EXPECT_EQ(back.value().overlay, OverlayMode::Names);

@@ -35,6 +35,7 @@
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
 #include "tools/mural/page/page_command.hpp"
+#include "tools/mural/show/show_command.hpp"
 #include "tools/mural/simulate/simulate_command.hpp"
 #include "tools/mural/record_costs/record_costs_command.hpp"
 #include "tools/mural/run/slurm_allocation.hpp"
@@ -327,6 +328,10 @@ private:
             "page", "show, explain and operate a running session in a browser",
             [this] { return mural::page::pageCommand(page_); }, mural::page::kPageFooter);
         mural::page::describePage(page, page_);
+        CLI::App& show = add(
+            "show", "show the pictures of a session on another machine (mural run --send)",
+            [this] { return mural::cli::showCommand(show_); }, mural::cli::kShowFooter);
+        mural::cli::describeShow(show, show_);
         CLI::App& change = add(
             "change", "divide the work of a running session in another way",
             [this] { return mural::cli::changeCommand(change_); }, mural::cli::kChangeFooter);
@@ -538,6 +543,7 @@ private:
     mural::cli::ChangeArguments change_;
     mural::cli::CtlArguments ctl_;
     mural::page::PageArguments page_;
+    mural::cli::ShowArguments show_;
     mural::cli::BenchArguments bench_;
     mural::cli::ConfigArguments config_;
     mural::cli::SimulateArguments simulate_;

@@ -95,7 +95,8 @@ bool headShowsCanvas(const SessionConfig& config, const CanvasPlan& canvas) {
 }
 
 bool headTakesPictures(const SessionConfig& config, const SessionPlan& plan) {
-    return config.display == Display::App || !config.out.empty() || headShowsWall(config, plan) ||
+    return config.display == Display::App || !config.out.empty() || !config.sends.empty() ||
+           headShowsWall(config, plan) ||
            std::ranges::any_of(plan.canvases, [&](const CanvasPlan& c) { return headShowsCanvas(config, c); });
 }
 

@@ -10,6 +10,7 @@
 #include "common/log/log.hpp"
 #include "nodes/head/frames/picture_place.hpp"
 #include "nodes/head/membership/kept_streams.hpp"
+#include "nodes/head/remote/remote_walls.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/replies.hpp"
@@ -23,6 +24,7 @@ constexpr int64_t kTickMs = 50;
 constexpr int64_t kStartTickMs = 5;             // while nodes start or catch up
 constexpr int64_t kProgressNs = 200 * kNsPerMs; // at most 5 lines per second
 constexpr int64_t kOutputProgressMs = 20'000;   // below the silence after which `mural run` gives up the head
+constexpr int64_t kRemotePatienceMs = 3000;     // for remote walls to show the last picture
 constexpr int64_t kProcessPatienceMs = 2000;    // time between a node's Bye and the end of its process
 
 std::vector<NodeClock> clocksOf(const SessionPlan& plan) {
@@ -118,6 +120,7 @@ HeadSession::~HeadSession() {
     if (output_) output_->drop();
     nodes_.loseAll("the head ends");
     returns_->stop([] {});
+    if (remoteWalls_) remoteWalls_->end(); // its threads ask for programs
     if (programs_) programs_->endAll();
     nodes_.end();
     output_.reset();  // its thread calls the program table
@@ -373,6 +376,7 @@ void HeadSession::finish() {
     programs_->drainAll(Deadline::inMs(options_.drainPatienceMs), [this] { watchNodes(monotonicNowNs()); });
     finishNodes();
     finishOutput();
+    if (remoteWalls_) remoteWalls_->finish(Deadline::inMs(kRemotePatienceMs));
     controlServer_.reset();
     server_.reset();
     programs_->endAll();

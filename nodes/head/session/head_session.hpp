@@ -44,6 +44,7 @@
 #include "nodes/head/preview/preview_server.hpp"
 #include "nodes/head/preview/window_pictures.hpp"
 #include "nodes/head/recording/session_recording.hpp"
+#include "nodes/head/remote/shown_program.hpp"
 #include "nodes/head/session/session_report.hpp"
 #include "nodes/head/session/session_status.hpp"
 #include "nodes/head/session/slowdown_advice.hpp"
@@ -56,6 +57,9 @@
 #include "streamcodec/wire/replies.hpp"
 
 namespace mural {
+
+class RemoteInput;
+class RemoteWalls;
 
 // A program's own window.
 struct NativeWindow {
@@ -179,6 +183,9 @@ private:
     // The control interface (head_session_control.cpp). The control thread calls the operations.
     void openControl();
     void openPreview();
+    // Remote walls (head_session_remote.cpp).
+    Result<void> openRemoteWalls();
+    Result<ShownProgram> shownProgram();
     [[nodiscard]] std::optional<Viewport> areaOnWall(int node) const; // of the first canvas
     ControlOperations controlOperations();
     Result<nlohmann::json> programWindow();
@@ -314,7 +321,9 @@ private:
         if (preview_) preview_->offer(composed.frame, composed.picture, composed.wallWidth, composed.wallHeight);
     }};
     std::unique_ptr<PreviewServer> preview_; // null: the head receives no pictures, or has no socket for pages
-    std::unique_ptr<PictureOutput> output_;  // null: the head receives no pictures
+    std::unique_ptr<RemoteInput> remoteInput_;
+    std::unique_ptr<RemoteWalls> remoteWalls_; // null: none
+    std::unique_ptr<PictureOutput> output_;    // null: the head receives no pictures
     PlanSequence plans_;
     BalancerControl equalizers_{[this] { return balancer(); }};
     SlowdownAdvice advice_;

@@ -122,15 +122,12 @@ ControlOperations HeadSession::controlOperations() {
 }
 
 Result<Json> HeadSession::programWindow() {
-    const FrameTracker::ShownWindow shown = frames_.shownWindow();
-    if (shown.client == 0) return Error{"no program draws at the moment; start one, or wait for its first frame"};
-    const auto programs = programs_->status();
-    const auto program = std::ranges::find(programs, shown.client, &ProgramStatus::id);
-    const auto window = nativeWindowOf(shown.client, 0, shown.native);
-    return Json{{"client", shown.client},
-                {"pid", program != programs.end() ? Json(program->pid) : Json()},
-                {"display", window ? window->display : ""},
-                {"window", window ? window->id : 0}};
+    const auto program = shownProgram();
+    if (!program) return program.error();
+    return Json{{"client", program->client},
+                {"pid", program->pid != 0 ? Json(program->pid) : Json()},
+                {"display", program->display},
+                {"window", program->window}};
 }
 
 void HeadSession::addNodeOperations(ControlOperations& operations) {

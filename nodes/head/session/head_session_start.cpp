@@ -9,6 +9,7 @@
 #include "common/log/log.hpp"
 #include "common/log/process_log.hpp"
 #include "nodes/head/planning/delta_plan.hpp"
+#include "nodes/head/remote/remote_walls.hpp"
 #include "nodes/head/session/head_session.hpp"
 #include "nodes/affinity/placement.hpp"
 #include "nodes/session/session_secret.hpp"
@@ -79,6 +80,7 @@ Result<void> HeadSession::bringUp() {
     openTables();
     goOnWithoutAbsent();
     openPreview();
+    if (auto opened = openRemoteWalls(); !opened) return opened;
     auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_);
     if (!server) return server.error();
     server_ = std::move(*server);
@@ -118,6 +120,7 @@ PictureOutputConfig HeadSession::outputConfig() {
     }
     output.offerToPages = [this](int64_t frame, const std::shared_ptr<const OwnedPicture>& picture) {
         if (preview_) preview_->offer(frame, picture);
+        if (remoteWalls_) remoteWalls_->offer(frame, picture);
     };
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
     output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
@@ -381,6 +384,8 @@ std::vector<std::string> HeadSession::explainLines() {
     lines.push_back(explainCulling(config_.culling));
     if (!streamLine_.empty()) lines.push_back(streamLine_);
     lines.push_back(deltaLine_);
+    if (remoteWalls_)
+        for (std::string& line : remoteWalls_->explain()) lines.push_back(std::move(line));
     lines.push_back("threads of the head: " + placement_);
     const std::lock_guard lock(mutex_);
     for (const NodePlan& node : plan->nodes) {

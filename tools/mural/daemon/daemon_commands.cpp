@@ -4,23 +4,21 @@
 #include <array>
 #include <csignal>
 #include <optional>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
 
 #include "common/log/log.hpp"
-#include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/daemon/daemon_client.hpp"
 #include "nodes/daemon/node_daemon.hpp"
 #include "tools/mural/commands.hpp"
+#include "tools/mural/end_signals.hpp"
 #include "transport/discovery/announcing.hpp"
 #include "transport/discovery/node_id.hpp"
 #include "transport/rsp/group_text.hpp"
 #include "transport/tcp/socket_address.hpp"
-#include "transport/system_error.hpp"
 
 namespace mural::cli {
 
@@ -44,18 +42,6 @@ std::string machineName() {
 bool announceable(const std::string& name) {
     return !name.empty() && name.size() <= kMaxAnnouncedText &&
            std::ranges::all_of(name, [](char c) { return c > ' ' && c <= '~' && c != '@' && c != ','; });
-}
-
-// Returns a descriptor that is readable after a termination signal. Call before any thread starts.
-Result<FileDescriptor> endSignals() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, number);
-    launch::rememberSignals();
-    if (pthread_sigmask(SIG_BLOCK, &signals, nullptr) != 0) return Error{"cannot wait for signals"};
-    FileDescriptor fd(signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK));
-    if (!fd.valid()) return Error{"cannot create a signalfd: " + errnoText(errno)};
-    return fd;
 }
 
 } // namespace

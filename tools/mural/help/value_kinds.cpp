@@ -70,6 +70,10 @@ constexpr char kConfigFiles[] = "*.eqc";
 
 // Options whose values need more than the name of the value.
 const OptionKind kOptions[] = {
+    {"show", "--display",
+     [] {
+         return wordsOnly({"windows", "none"});
+     }},
     {"", "--display", [] { return wordsOnly(namesOf(kDisplayChoices)); }},
     {"", "--culling", [] { return wordsOnly(namesOf(kCullingChoices)); }},
     {"", "--tiling", [] { return wordsOnly(namesOf(kTilingChoices)); }},
@@ -136,6 +140,7 @@ const OptionKind kOptions[] = {
     {"page", "--page-host", plain<ValueSource::Text>},
     {"help", "COMMAND", plain<ValueSource::MuralCommand>},
     {"node", "--name", plain<ValueSource::Text>},
+    {"show", "--name", plain<ValueSource::Text>},
     {"node", "--as", plain<ValueSource::Text>},
 };
 
@@ -183,6 +188,8 @@ constexpr NamedKind kNames[] = {
     {"ADDRESS:PORT", ValueSource::Number},
     {"[ADDRESS]:PORT", ValueSource::Number},
     {"HOST:PORT", ValueSource::Number},
+    {"[HOST:]PORT", ValueSource::Number},
+    {"NAME=HOST:PORT", ValueSource::Text},
 };
 
 } // namespace

@@ -25,8 +25,9 @@ void describeLaunchOptions(CLI::App& command, RunArguments& a) {
                     "in it")
         ->type_name("OPTIONS");
     command
-        .add_option("--secret", a.launchSecret,
-                    "file with the secret of waiting nodes (mural node --wait); --nodes names them @NAME")
+        .add_option(
+            "--secret", a.launchSecret,
+            "file with the secret of waiting nodes (mural node --wait), which --nodes names @NAME, and of remote walls")
         ->type_name("FILE");
     command
         .add_option("--start-timeout", a.startTimeout,
@@ -44,6 +45,8 @@ constexpr const char* kRunFooter = R"(Examples:
   mural run --size 7680x4320 --out wall.mp4 -- app       the program sees a screen of that size
   mural run --subpixel 4 -- glxgears                     each pixel is the mean of 4 samples, one per node
   mural run --stereo anaglyph --eye-base 1 --focus 40 -- glxgears
+  mural run --secret key --send museum=wall.example:4281 -- app
+                                                         pictures for mural show on another machine
   mural run --record app.mural -- app                    GL stream to a file, for mural replay, dump and trim
   mural run --config wall.eqc -- app                     wall, nodes and compounds from a file
   mural run --native --frames 500 -- glxgears            without Mural, for comparison
@@ -68,6 +71,13 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--out", a.out, "write pictures into a folder (PNG), or a video (.mp4, .mkv, .webm, …)")
         ->type_name("DIR|VIDEO");
     command.add_option("--save", a.save, "with --out: write only these frames, counted from 1")->type_name("1,30,90");
+    command
+        .add_option("--send", a.sends,
+                    "send the pictures to a remote wall (mural show --listen), with codec=, tile=, rate=, input= and "
+                    "secret= after commas; may be repeated")
+        ->type_name("NAME=HOST:PORT")
+        ->allow_extra_args(false)
+        ->take_all();
     command.add_option("--record", a.record, "record the program's GL stream to this file, for mural replay")
         ->type_name("FILE");
     command.add_flag("--print-config", a.printConfig,

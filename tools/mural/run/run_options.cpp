@@ -90,6 +90,7 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     options.quiet = a.quiet;
     if (a.report && a.report->empty()) return badValue("--report", "", "must be a file, such as --report report.json");
     options.reportFile = a.report.value_or("");
+    if (a.native && !a.sends.empty()) return Error{"--send sends the pictures of a wall; omit --native"};
     if (a.native && !a.page.empty()) return Error{"--page shows a wall; omit --native"};
     options.page = a.page;
     options.program = a.program;

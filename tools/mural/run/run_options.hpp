@@ -38,6 +38,7 @@ struct RunArguments {
         nodeProgram, captureVia, restartNodes, minNodes, spareNodes;
     OptionText config, canvas, projection, modelUnit, delta, cacheSize;
     std::vector<std::string> layouts;
+    std::vector<std::string> sends;
     bool allLocal = false, printConfig = false;
     bool startsNodes = false; // a new session: without nodes in the options, the batch job gives them
     OptionText stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;

@@ -1,0 +1,42 @@
+// Input of remote walls for the program. Thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <sys/types.h>
+
+#include "common/base/result.hpp"
+#include "nodes/head/remote/shown_program.hpp"
+#include "nodes/input/program_input.hpp"
+#include "nodes/remote_wall/wall_target.hpp"
+
+namespace mural {
+
+class RemoteInput {
+public:
+    // find: returns the program, or the reason against input. Called by the threads of take(). runPid: of `mural run`.
+    RemoteInput(std::function<Result<ShownProgram>()> find, pid_t runPid)
+        : find_(std::move(find)), runPid_(runPid), input_([](int, uint32_t) {}) {}
+
+    // Sends an event to the program, if the permission of its wall includes the program's display.
+    void take(const std::string& wall, remote::InputFrom permission, const input::InputEvent& event);
+    // Releases what the wall's events hold down.
+    void releaseAll();
+
+private:
+    void findDisplay(int64_t nowNs);                              // requires mutex_
+    void report(const std::string& wall, const std::string& why); // requires mutex_
+
+    const std::function<Result<ShownProgram>()> find_;
+    const pid_t runPid_;
+    std::mutex mutex_; // guards the members below
+    input::ProgramInput input_;
+    bool isPrivate_ = false; // the display
+    int64_t foundNs_ = 0;    // the latest search; 0: none
+    std::string problem_;    // of the latest search
+    std::string reported_;
+};
+
+} // namespace mural
