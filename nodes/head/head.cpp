@@ -110,6 +110,7 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, He
         wall.positionY = config.windowY;
         wall.fullScreen = config.fullScreen;
         wall.overlay = overlay;
+        wall.onInput = place.onInput;
         wall.wall.wallWidthMm = place.size.width;
         wall.wall.wallHeightMm = place.size.height;
         return Result<std::unique_ptr<PictureSink>>(

@@ -25,14 +25,17 @@ Result<std::unique_ptr<DisplayInput>> DisplayInput::open(const ProgramDisplay& d
         connection.get(), xcb_test_get_version(connection.get(), XCB_TEST_MAJOR_VERSION, XCB_TEST_MINOR_VERSION),
         nullptr));
     if (!version) return Error{"the display " + display.name + " has no XTEST extension, so it takes no input"};
-    const xcb_window_t root = rootOf(connection.get());
-    std::unique_ptr<DisplayInput> input(new DisplayInput(std::move(connection), root, display.window));
+    std::unique_ptr<DisplayInput> input(new DisplayInput(std::move(connection), display));
     if (!input->readKeyboard()) return Error{"the keyboard of the display " + display.name + " cannot be read"};
     return input;
 }
 
-DisplayInput::DisplayInput(XConnection connection, xcb_window_t root, uint32_t window)
-    : connection_(std::move(connection)), root_(root), window_(window), isGiven_(window != 0) {}
+DisplayInput::DisplayInput(XConnection connection, const ProgramDisplay& display)
+    : connection_(std::move(connection)),
+      root_(rootOf(connection_.get())),
+      window_(display.window),
+      isGiven_(window_ != 0),
+      isPrivate_(display.isPrivate) {}
 
 DisplayInput::~DisplayInput() {
     if (!isLost()) releaseAll();
@@ -92,6 +95,43 @@ void DisplayInput::button(uint8_t number, bool isDown) {
     fake(isDown ? XCB_BUTTON_PRESS : XCB_BUTTON_RELEASE, number);
 }
 
+// Windows of one program have the same upper bits, which the server gives to its connection.
+bool DisplayInput::isOfProgram(xcb_window_t window) const {
+    const uint32_t mask = xcb_get_setup(connection_.get())->resource_id_mask;
+    return window != XCB_NONE && (window & ~mask) == (window_ & ~mask);
+}
+
+// A window manager's frame contains the program's window, so all windows below the pointer count.
+bool DisplayInput::isBelowPointer() {
+    for (xcb_window_t window = root_; window != XCB_NONE;) {
+        const Answer<xcb_query_pointer_reply_t> pointer(
+            xcb_query_pointer_reply(connection_.get(), xcb_query_pointer(connection_.get(), window), nullptr));
+        if (!pointer) return false;
+        window = pointer->child;
+        if (isOfProgram(window)) return true;
+    }
+    return false;
+}
+
+bool DisplayInput::hasFocus() {
+    const Answer<xcb_get_input_focus_reply_t> focus(
+        xcb_get_input_focus_reply(connection_.get(), xcb_get_input_focus(connection_.get()), nullptr));
+    if (!focus) return false;
+    return focus->focus == XCB_INPUT_FOCUS_POINTER_ROOT ? isBelowPointer() : isOfProgram(focus->focus);
+}
+
+// A private display has no other programs.
+bool DisplayInput::reachesProgram(const InputEvent& event) {
+    const bool isPress = event.kind == InputKind::Down || event.kind == InputKind::Wheel ||
+                         (event.kind == InputKind::Touch && event.isDown);
+    const bool isTyped = event.kind == InputKind::Text || (event.kind == InputKind::Key && event.isDown);
+    if (isPrivate_ || (!isPress && !isTyped) || !placeWindow()) return true;
+    refusal_.clear();
+    if (isPress && !isBelowPointer()) refusal_ = "another window covers the program's window; move one of them";
+    if (isTyped && !hasFocus()) refusal_ = "another window has the keyboard; click into the program's window";
+    return refusal_.empty();
+}
+
 void DisplayInput::wheel(double& sum, double add, uint8_t less, uint8_t more) {
     for (const int step : wheelSteps(sum, add)) {
         const uint8_t number = step < 0 ? less : more;
@@ -103,6 +143,7 @@ void DisplayInput::wheel(double& sum, double add, uint8_t less, uint8_t more) {
 void DisplayInput::send(const InputEvent& event) {
     constexpr uint8_t kUp = 4, kDown = 5, kLeft = 6, kRight = 7;
     if (event.hasPlace) moveTo(event.x, event.y);
+    if (!reachesProgram(event)) return;
     const auto number = static_cast<uint8_t>(event.button > 3 ? event.button + 4 : event.button); // 4 to 7: the wheel
     switch (event.kind) {
     case InputKind::Move: break;

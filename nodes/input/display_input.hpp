@@ -29,7 +29,10 @@ public:
     DisplayInput& operator=(const DisplayInput&) = delete;
     ~DisplayInput();
 
+    // On a display of the user, presses and keys for other programs are dropped.
     void send(const InputEvent& event);
+    // Returns why the latest press or key was dropped; empty: it was not.
+    [[nodiscard]] const std::string& refusal() const { return refusal_; }
     // Releases all held keys and buttons.
     void releaseAll();
     [[nodiscard]] bool holdsButtons() const { return !buttons_.empty(); }
@@ -38,8 +41,12 @@ public:
     [[nodiscard]] int fd() const;
 
 private:
-    DisplayInput(XConnection connection, xcb_window_t root, uint32_t window);
+    DisplayInput(XConnection connection, const ProgramDisplay& display);
     bool readKeyboard();
+    [[nodiscard]] bool reachesProgram(const InputEvent& event);
+    [[nodiscard]] bool isOfProgram(xcb_window_t window) const;
+    [[nodiscard]] bool isBelowPointer();
+    [[nodiscard]] bool hasFocus();
     void fake(uint8_t type, uint8_t detail, int x = 0, int y = 0);
     void moveTo(double x, double y);
     bool placeWindow();
@@ -61,7 +68,8 @@ private:
     XConnection connection_;
     const xcb_window_t root_;
     xcb_window_t window_; // of the program; 0: the largest one
-    const bool isGiven_;
+    const bool isGiven_, isPrivate_;
+    std::string refusal_;
     int left_ = 0, top_ = 0, width_ = 0, height_ = 0; // of the window, on the root
     int64_t placedNs_ = 0;
     KeyboardMap map_;

@@ -86,6 +86,10 @@ void ProgramInput::perform(std::unique_ptr<DisplayInput>& input, const Entry& en
         if (opened) input = std::move(*opened);
     } else if (input && !input->isLost()) {
         input->send(entry.event);
+        {
+            const std::lock_guard lock(mutex_);
+            problem_ = input->refusal();
+        }
         if (entry.viewer != 0) onSent_(entry.viewer, entry.event.number);
     }
     holdsButtons_ = input && input->holdsButtons();

@@ -34,7 +34,7 @@ public:
     // Releases all held keys and buttons, after the events that wait.
     void releaseAll();
     [[nodiscard]] bool holdsButtons() const { return holdsButtons_; }
-    // Returns the error of the last attempt to open the display; empty: none.
+    // Returns the error of the last attempt to open the display, or why the latest event was dropped; empty: none.
     [[nodiscard]] std::string problem() const;
 
 private:

@@ -1,16 +1,12 @@
 #include "nodes/remote_wall/wall_message.hpp"
 
-#include <algorithm>
-#include <cmath>
-
+#include "nodes/input/input_event_bytes.hpp"
 #include "objects/wire/message_bytes.hpp"
 
 namespace mural::remote {
 
 namespace {
 
-using input::InputEvent;
-using input::InputKind;
 using objects::MessageReader;
 using objects::MessageWriter;
 
@@ -18,11 +14,7 @@ enum class Kind : uint8_t { Hello, Tile, FrameEnd, Ack, Want, Event, Bye };
 
 constexpr size_t kMaxText = 64;
 constexpr size_t kMaxReason = 512;
-constexpr size_t kMaxTypedText = 4096;
 constexpr uint32_t kMagic = 0x4c57554d; // "MUWL"
-constexpr double kPlaceUnits = 1 << 30; // of the width or height of a picture
-constexpr int kMaxWheelUnits = 120 * 100;
-constexpr int kMaxEventButton = 9;
 
 class Encoder {
 public:
@@ -65,18 +57,8 @@ public:
         out_.byte(want.isWhole ? 1 : 0);
     }
     void operator()(const Event& event) {
-        const InputEvent& input = event.input;
         begin(Kind::Event);
-        out_.byte(static_cast<uint8_t>(input.kind));
-        out_.number(input.number);
-        out_.byte(static_cast<uint8_t>((input.hasPlace ? 1 : 0) | (input.isDown ? 2 : 0)));
-        putPlace(input.x), putPlace(input.y);
-        put(input.button);
-        putWheel(input.wheelX), putWheel(input.wheelY);
-        out_.number(input.keysym);
-        put(input.width), put(input.height);
-        out_.text(input.key.substr(0, kMaxText)), out_.text(input.code.substr(0, kMaxText));
-        out_.text(input.text.substr(0, kMaxTypedText));
+        input::putEvent(out_, event.input);
     }
     void operator()(const Bye& bye) {
         begin(Kind::Bye);
@@ -88,10 +70,6 @@ private:
     void begin(Kind kind) { out_.byte(static_cast<uint8_t>(kind)); }
     void put(int value) { out_.number(static_cast<uint64_t>(value < 0 ? 0 : value)); }
     void put(const PictureSize& size) { put(size.width), put(size.height), put(size.eyes); }
-    void putPlace(double value) { put(static_cast<int>(std::clamp(value, 0.0, 1.0) * kPlaceUnits)); }
-    void putWheel(double value) {
-        put(static_cast<int>(std::lround(std::clamp<double>(value, -kMaxWheelUnits, kMaxWheelUnits))) + kMaxWheelUnits);
-    }
 
     MessageWriter out_;
 };
@@ -158,31 +136,6 @@ FrameEnd frameEndOf(MessageReader& in) {
     return end;
 }
 
-double wheelOf(MessageReader& in) { return intUpTo(in, 2 * kMaxWheelUnits) - kMaxWheelUnits; }
-
-Event eventOf(MessageReader& in) {
-    Event event;
-    InputEvent& input = event.input;
-    input.kind = static_cast<InputKind>(in.numberUpTo(static_cast<uint64_t>(InputKind::Close)));
-    input.number = static_cast<uint32_t>(in.numberUpTo(UINT32_MAX));
-    const uint64_t flags = in.numberUpTo(3);
-    input.hasPlace = (flags & 1) != 0;
-    input.isDown = (flags & 2) != 0;
-    input.x = intUpTo(in, static_cast<int>(kPlaceUnits)) / kPlaceUnits;
-    input.y = intUpTo(in, static_cast<int>(kPlaceUnits)) / kPlaceUnits;
-    input.button = intUpTo(in, kMaxEventButton);
-    if (input.button < 1) in.fail();
-    input.wheelX = wheelOf(in);
-    input.wheelY = wheelOf(in);
-    input.keysym = static_cast<uint32_t>(in.numberUpTo(UINT32_MAX));
-    input.width = intUpTo(in, kMaxPictureSide);
-    input.height = intUpTo(in, kMaxPictureSide);
-    input.key = in.text(kMaxText);
-    input.code = in.text(kMaxText);
-    input.text = in.text(kMaxTypedText);
-    return event;
-}
-
 Message bodyOf(Kind kind, MessageReader& in) {
     switch (kind) {
     case Kind::Hello: return helloOf(in);
@@ -200,7 +153,7 @@ Message bodyOf(Kind kind, MessageReader& in) {
         want.isWhole = flagOf(in);
         return want;
     }
-    case Kind::Event: return eventOf(in);
+    case Kind::Event: return Event{input::readEvent(in)};
     case Kind::Bye: {
         const bool isFinal = flagOf(in);
         Bye bye{in.text(kMaxReason), isFinal};

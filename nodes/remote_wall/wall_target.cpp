@@ -41,9 +41,9 @@ Result<void> readMember(const std::string& name, const std::string& value, WallT
     if (name == "tile") return readInt(name, value, kMinTile, kMaxTile, target.tile);
     if (name == "rate") return readInt(name, value, 1, kMaxRate, target.rate);
     if (name == "input") {
-        if (value != "off" && value != "on" && value != "display")
-            return Error{"input=" + value + " must be off, on or display"};
-        target.input = value == "off" ? InputFrom::Off : value == "on" ? InputFrom::Private : InputFrom::Any;
+        const auto permission = input::inputPermissionOf(value);
+        if (!permission) return Error{"input=" + value + " must be " + input::kInputPermissionNames};
+        target.input = *permission;
         return {};
     }
     if (name == "secret" && !value.empty()) {

@@ -5,15 +5,9 @@
 #include <string>
 
 #include "common/base/result.hpp"
+#include "nodes/input/input_permission.hpp"
 
 namespace mural::remote {
-
-// Whether events of the remote wall's windows reach the program.
-enum class InputFrom : uint8_t {
-    Off,
-    Private, // if the program runs on a private display
-    Any      // also on a display of the user, whose pointer then moves
-};
 
 struct WallTarget {
     std::string name;
@@ -22,7 +16,7 @@ struct WallTarget {
     std::string codec = "jpeg-100";
     int tile = 512;
     int rate = 60; // most frames per second
-    InputFrom input = InputFrom::Off;
+    input::InputPermission input = input::InputPermission::Off;
     std::string secretFile; // empty: that of --secret
 };
 

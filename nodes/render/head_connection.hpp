@@ -48,7 +48,8 @@ public:
     // The same, but returns nothing if no packet begins before the deadline.
     Result<std::optional<wire::PacketHeader>> nextBefore(std::span<const std::byte>& payload, Deadline deadline);
 
-    // Sends one message in up to three parts, immediately; FrameSpans goes with the next message. Thread-safe. Errors set `broken()`, which ends the node.
+    // Sends one message in up to three parts, immediately; FrameSpans goes with the next message. Thread-safe. Errors
+    // set `broken()`, which ends the node.
     void send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {});
     // Sends an empty message, unless another thread is sending.
     void sendIfFree(wire::NodeMessage type);

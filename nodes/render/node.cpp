@@ -32,6 +32,7 @@
 #include "nodes/render/player_config.hpp"
 #include "nodes/render/replay_spans.hpp"
 #include "nodes/render/windows/preview_sender.hpp"
+#include "nodes/input/input_event_bytes.hpp"
 #include "nodes/render/windows/tile_windows.hpp"
 #include "nodes/render/work_clock.hpp"
 #include "nodes/frame_transfer/picture_sender.hpp"
@@ -255,7 +256,7 @@ private:
             if (auto opened = openBarrier(ready); !opened) return fail(opened.error().message);
         }
         if (setup_.wallWindows) {
-            auto windows = TileWindows::open(setup_);
+            auto windows = TileWindows::open(setup_, windowInput());
             if (!windows) return fail(windows.error().message);
             windows_ = std::move(*windows);
         }
@@ -520,6 +521,14 @@ private:
         };
         sender_ = std::make_unique<PictureSender>(config, send);
         work_.begin(); // the sender's clock starts now
+    }
+
+    // Empty: the windows take no input.
+    TileWindows::OnInput windowInput() {
+        if (!setup_.windowInput) return {};
+        return [this](const input::InputEvent& event) {
+            line_->send(wire::NodeMessage::WindowInput, input::bytesOfEvent(event));
+        };
     }
 
     void showTiles(const PlayerOutputs::Frame& f) {

@@ -44,6 +44,7 @@ template <> struct EnumNames<Readback> {
     static constexpr std::pair<Readback, const char*> kAll[] = {
         {Readback::Auto, "auto"}, {Readback::Direct, "direct"}, {Readback::Buffer, "buffer"}};
 };
+template <> struct EnumNames<input::InputPermission> { static constexpr auto& kAll = input::kInputPermissions; };
 template <> struct EnumNames<OverlayMode> { static constexpr auto& kAll = kOverlayModes; };
 template <> struct EnumNames<Eye> {
     static constexpr std::pair<Eye, const char*> kAll[] = {
@@ -124,6 +125,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("windowY", c.windowY);
     visit("overlay", c.overlay);
     visit("overlayInFiles", c.overlayInFiles);
+    visit("windowInput", c.windowInput);
     visit("placeThreads", c.placeThreads);
     visit("explain", c.explain);
     visit("displayName", c.displayName);
@@ -191,6 +193,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("windowX", s.windowX);
     visit("windowY", s.windowY);
     visit("overlay", s.overlay);
+    visit("windowInput", s.windowInput);
     visit("wallWidthMm", s.wallWidthMm);
     visit("wallHeightMm", s.wallHeightMm);
     visit("placeThreads", s.placeThreads);

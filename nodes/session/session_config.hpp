@@ -10,6 +10,7 @@
 #include "balancer/equalizers/balance.hpp"
 #include "common/base/result.hpp"
 #include "common/geometry/viewport.hpp"
+#include "nodes/input/input_permission.hpp"
 #include "nodes/overlay/overlay_mode.hpp"
 #include "nodes/session/culling_mode.hpp"
 #include "nodes/session/readback.hpp"
@@ -85,7 +86,9 @@ struct SessionConfig {
     int windowX = 0, windowY = 0;           // --position of the wall's upper left corner
     OverlayMode overlay = OverlayMode::Off; // --overlay: drawn over the windows of the wall, at the start
     bool overlayInFiles = false;            // --overlay-in-files
-    bool placeThreads = true;               // --no-placement turns it off
+    // --window-input: events of the wall windows for the program
+    input::InputPermission windowInput = input::InputPermission::Private;
+    bool placeThreads = true; // --no-placement turns it off
     bool explain = false;
     std::string displayName; // X display of the wall windows and of the program's window
 };
@@ -132,6 +135,7 @@ struct NodeSetup {
     bool fullScreen = false;
     int windowX = 0, windowY = 0;
     OverlayMode overlay = OverlayMode::Off;   // drawn over its windows
+    bool windowInput = false;                 // sends the events of its windows
     double wallWidthMm = 0, wallHeightMm = 0; // size of its canvas; 0: unknown
     bool placeThreads = true;
     std::string displayName;

@@ -24,13 +24,14 @@ enum class NodeMessage : uint32_t {
     //   and the assignments of the windows follow.
     Turns = 12,
     PackedPicture = 13, // PictureHeader + the rows as encoded by PicturePacker
-    FrameSpans =
-        14, // FrameSpansHeader + FrameSpan*, directly before the frame's FrameDone; only while statistics are on
+    // FrameSpansHeader + FrameSpan*, directly before the frame's FrameDone; only while statistics are on
+    FrameSpans = 14,
     ClockReply = 15, // ClockReplyMessage: the reply to ClockProbe
     ObjectRequest =
         16,           // u32 client, then a message about distributed objects to the program (objects/wire/messages.hpp)
     OutputProof = 17, // OutputProofMessage: the reply to ProveOutput
     PreviewTile = 18, // PreviewTileHeader + JPEG: the reply to WantPreview
+    WindowInput = 19, // an input event of its wall windows (nodes/input/input_event_bytes.hpp)
 };
 
 struct MessageHeader {

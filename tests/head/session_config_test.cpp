@@ -34,6 +34,7 @@ TEST(SessionConfig, roundTripsEveryField) {
     c.placeThreads = false;
     c.overlay = OverlayMode::Names;
     c.overlayInFiles = true;
+    c.windowInput = input::InputPermission::Any;
     c.explain = true;
     c.displayName = ":7";
     const std::string json = toJson(c);
@@ -46,6 +47,7 @@ TEST(SessionConfig, roundTripsEveryField) {
     EXPECT_EQ(back.value().hosts, c.hosts);
     EXPECT_EQ(back.value().display, Display::App);
     EXPECT_EQ(back.value().overlay, OverlayMode::Names);
+    EXPECT_EQ(back.value().windowInput, input::InputPermission::Any);
     EXPECT_NE(json, toJson(SessionConfig{}));
 }
 

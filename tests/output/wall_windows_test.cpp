@@ -364,6 +364,7 @@ TEST_F(Walls, reportInputWithItsPlaceOnTheWall) {
     WallWindowsConfig config = configFor({{{0, 90, 120, 90}, 30, 40, "wall", -1}}, WallDrawing::XPut);
     config.wall.wallWidth = 240;
     config.wall.wallHeight = 180;
+    config.hasBorders = true;
     config.onInput = [&](const input::InputEvent& event) {
         const std::lock_guard lock(mutex);
         events.push_back(event);
@@ -386,8 +387,8 @@ TEST_F(Walls, reportInputWithItsPlaceOnTheWall) {
     const auto isDown = [](const auto& event) { return event.kind == input::InputKind::Down; };
     ASSERT_TRUE(becomesTrue([&] { return find(isDown).has_value(); }));
     EXPECT_EQ(find(isDown)->button, 3);
-    EXPECT_NEAR(find(isDown)->x, 30.0 / 240, 1e-9);
-    EXPECT_NEAR(find(isDown)->y, 45.0 / 180, 1e-9);
+    EXPECT_NEAR(find(isDown)->x, 30.5 / 240, 1e-9);
+    EXPECT_NEAR(find(isDown)->y, 45.5 / 180, 1e-9);
     input::InputEvent wheel;
     wheel.kind = input::InputKind::Wheel;
     wheel.wheelY = 120;

@@ -23,7 +23,7 @@ TEST(SendWindow, holdsTwoFramesInFlight) {
     EXPECT_TRUE(window.isIdle());
 }
 
-TEST(SendWindow, anAcknowledgementIncludesEarlierFrames) {
+TEST(SendWindow, includesEarlierFramesInAnAcknowledgement) {
     SendWindow window(60);
     window.sent(4, 100, 0, 0);
     window.sent(7, 100, 20 * kMs, 20 * kMs);
@@ -73,7 +73,7 @@ TEST(SendWindow, reportsSilence) {
     EXPECT_EQ(window.silentNs(4 * kNsPerS), 3 * kNsPerS);
 }
 
-TEST(SendWindow, anAcknowledgementEndsTheSilence) {
+TEST(SendWindow, countsSilenceUntilAnAcknowledgement) {
     SendWindow window(60);
     window.sent(1, 100, 0, 5 * kMs);
     window.sent(2, 100, 20 * kMs, 25 * kMs);

@@ -78,7 +78,7 @@ TEST(WallPair, showsPictures) {
     EXPECT_TRUE(sender.finish(Deadline::inMs(kPatienceMs)));
 }
 
-TEST(WallPair, theNewestPictureReplacesOthers) {
+TEST(WallPair, replacesOthersByTheNewestPicture) {
     const auto receiver = receiverAt(0);
     WallSender sender(senderTo(portOf(*receiver)));
     ReceivedFrame frame;
@@ -95,7 +95,7 @@ TEST(WallPair, theNewestPictureReplacesOthers) {
     EXPECT_LE(shown, 4U); // two in flight, one of them replaced, and the newest
 }
 
-TEST(WallPair, aWallThatShowsNothingDelaysNobody) {
+TEST(WallPair, delaysNobodyForAWallThatShowsNothing) {
     const auto receiver = receiverAt(0);
     WallSender sender(senderTo(portOf(*receiver)));
     const int64_t beganNs = monotonicNowNs();

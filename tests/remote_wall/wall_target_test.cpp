@@ -15,7 +15,7 @@ TEST(WallTarget, hasDefaults) {
     EXPECT_EQ(target->codec, "jpeg-100");
     EXPECT_EQ(target->tile, 512);
     EXPECT_EQ(target->rate, 60);
-    EXPECT_EQ(target->input, InputFrom::Off);
+    EXPECT_EQ(target->input, input::InputPermission::Off);
 }
 
 TEST(WallTarget, readsAllSettings) {
@@ -25,9 +25,9 @@ TEST(WallTarget, readsAllSettings) {
     EXPECT_EQ(target->codec, "auto");
     EXPECT_EQ(target->tile, 256);
     EXPECT_EQ(target->rate, 30);
-    EXPECT_EQ(target->input, InputFrom::Any);
+    EXPECT_EQ(target->input, input::InputPermission::Any);
     EXPECT_EQ(target->secretFile, "/etc/key");
-    EXPECT_EQ(wallTargetOf("a=b:1,input=on")->input, InputFrom::Private);
+    EXPECT_EQ(wallTargetOf("a=b:1,input=on")->input, input::InputPermission::Private);
 }
 
 TEST(WallTarget, namesTheWrongPart) {

@@ -7,6 +7,7 @@
 #include "common/log/log.hpp"
 #include "nodes/frame_spans/frame_spans_message.hpp"
 #include "nodes/frame_spans/span_scope.hpp"
+#include "nodes/input/input_event_bytes.hpp"
 
 namespace mural {
 namespace {
@@ -210,6 +211,7 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         return handle([&] { return events_.nodeClock(location_.node, message); });
     }
     case NodeMessage::PreviewTile: return readPreviewTile(header.sizeBytes);
+    case NodeMessage::WindowInput: return readWindowInput(header.sizeBytes);
     case NodeMessage::OutputProof: {
         wire::OutputProofMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
@@ -288,6 +290,15 @@ Result<void> NodeConnection::readFrameSpans(uint32_t sizeBytes) {
     if (auto valid = checkSpans(spans); !valid) return valid;
     if (!wire::isSensibleTime(header.sentNs)) return Error{"it sent statistics whose times are out of range"};
     return handle([&] { return events_.nodeFrameSpans(location_.node, header, spans); });
+}
+
+Result<void> NodeConnection::readWindowInput(uint32_t sizeBytes) {
+    if (sizeBytes > input::kMaxEventBytes) return Error{"it sent an input event of invalid size"};
+    auto bytes = readBytes(sizeBytes);
+    if (!bytes) return bytes.error();
+    const auto event = input::eventOfBytes(bytes->span());
+    if (!event) return event.error();
+    return handle([&] { return events_.nodeWindowInput(location_.node, *event); });
 }
 
 Result<void> NodeConnection::readDriverEvent(uint32_t sizeBytes) {

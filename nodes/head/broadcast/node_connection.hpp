@@ -13,6 +13,7 @@
 
 #include "common/base/result.hpp"
 #include "nodes/head/results/byte_buffer.hpp"
+#include "nodes/input/input_event.hpp"
 #include "nodes/launch/launchers/running_node.hpp"
 #include "nodes/frame_transfer/picture_unpacker.hpp"
 #include "nodes/frame_transfer/transfer_scale.hpp"
@@ -52,6 +53,7 @@ public:
     virtual Result<void> nodeOutputProof(int node, const wire::OutputProofMessage& message) = 0;
     virtual Result<void> nodePreviewTile(int node, const wire::PreviewTileHeader& header,
                                          const std::vector<std::byte>& jpeg) = 0;
+    virtual Result<void> nodeWindowInput(int node, const input::InputEvent& event) = 0;
     // The last call for a node that ended without Goodbye, after all of its messages.
     virtual void nodeLost(int node, const std::string& why) = 0;
 };
@@ -166,6 +168,7 @@ private:
     Result<void> readInView(uint32_t sizeBytes);
     Result<void> readTurns(uint32_t sizeBytes);
     Result<void> readFrameSpans(uint32_t sizeBytes);
+    Result<void> readWindowInput(uint32_t sizeBytes);
     Result<void> readPreviewTile(uint32_t sizeBytes);
     // Reads a number followed by a list that fills the message.
     template <class Entry>

@@ -199,6 +199,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.glBackend = config.glBackend;
     setup.sendPictures = headTakesPictures(config, plan);
     setup.wallWindows = showsWall(config, plan, node);
+    setup.windowInput = setup.wallWindows && config.windowInput != input::InputPermission::Off;
     if (const auto members = swapMembersOf(config, plan, node); !members.empty()) {
         setup.swapMembers = static_cast<int>(members.size());
         setup.swapRank = static_cast<int>(std::ranges::find(members, node.node, &NodePlan::node) - members.begin());

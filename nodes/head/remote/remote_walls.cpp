@@ -21,8 +21,7 @@ uint64_t newRemoteSession() {
 } // namespace
 
 Result<std::unique_ptr<RemoteWalls>> RemoteWalls::open(const std::vector<std::string>& sends,
-                                                       const std::string& secretFile, bool hasPairs,
-                                                       RemoteInput& input) {
+                                                       const std::string& secretFile, bool hasPairs, WallInput& input) {
     std::unique_ptr<RemoteWalls> walls(new RemoteWalls);
     const uint64_t session = newRemoteSession();
     for (const std::string& text : sends) {
@@ -35,10 +34,9 @@ Result<std::unique_ptr<RemoteWalls>> RemoteWalls::open(const std::vector<std::st
         config.secret = *secret;
         config.session = session;
         config.hasPairs = hasPairs;
-        if (target->input != remote::InputFrom::Off) {
-            config.onEvent = [&input, name = target->name, permission = target->input](const input::InputEvent& event) {
-                input.take(name, permission, event);
-            };
+        if (target->input != input::InputPermission::Off) {
+            const WallInput::Source source{"remote wall " + target->name, "input=display", target->input};
+            config.onEvent = [&input, source](const input::InputEvent& event) { input.take(source, event); };
             config.onGone = [&input] { input.releaseAll(); };
         }
         walls->walls_.push_back(std::make_unique<remote::WallSender>(std::move(config)));

@@ -8,7 +8,7 @@
 
 #include "common/base/clock.hpp"
 #include "common/base/result.hpp"
-#include "nodes/head/remote/remote_input.hpp"
+#include "nodes/head/input/wall_input.hpp"
 #include "nodes/output/picture.hpp"
 #include "nodes/remote_wall/wall_sender.hpp"
 
@@ -19,7 +19,7 @@ public:
     // sends: values of --send. secretFile: of --secret. hasPairs: pictures contain both eyes (stackEyes). input:
     // outlives this object. Errors: a value or its secret cannot be read.
     static Result<std::unique_ptr<RemoteWalls>> open(const std::vector<std::string>& sends,
-                                                     const std::string& secretFile, bool hasPairs, RemoteInput& input);
+                                                     const std::string& secretFile, bool hasPairs, WallInput& input);
 
     // Offers the latest picture of the wall. Does not block; any thread.
     void offer(int64_t frame, const std::shared_ptr<const OwnedPicture>& picture);

@@ -44,7 +44,7 @@
 #include "nodes/head/preview/preview_server.hpp"
 #include "nodes/head/preview/window_pictures.hpp"
 #include "nodes/head/recording/session_recording.hpp"
-#include "nodes/head/remote/shown_program.hpp"
+#include "nodes/head/input/shown_program.hpp"
 #include "nodes/head/session/session_report.hpp"
 #include "nodes/head/session/session_status.hpp"
 #include "nodes/head/session/slowdown_advice.hpp"
@@ -58,7 +58,7 @@
 
 namespace mural {
 
-class RemoteInput;
+class WallInput;
 class RemoteWalls;
 
 // A program's own window.
@@ -72,6 +72,7 @@ struct NativeWindow {
 struct WallPlace {
     int offsetX = 0; // relative to --position
     CanvasMillimetres size;
+    std::function<void(const input::InputEvent& event)> onInput; // as WallWindowsConfig
 };
 
 struct HeadOptions {
@@ -139,6 +140,7 @@ private:
                                 const std::vector<wire::FrameSpan>& spans) override;
     Result<void> nodeClock(int node, const wire::ClockReplyMessage& message) override;
     Result<void> nodeOutputProof(int node, const wire::OutputProofMessage& message) override;
+    Result<void> nodeWindowInput(int node, const input::InputEvent& event) override;
     Result<void> nodePreviewTile(int node, const wire::PreviewTileHeader& header,
                                  const std::vector<std::byte>& jpeg) override;
     void nodeLost(int node, const std::string& why) override;
@@ -183,8 +185,11 @@ private:
     // The control interface (head_session_control.cpp). The control thread calls the operations.
     void openControl();
     void openPreview();
-    // Remote walls (head_session_remote.cpp).
+    // Remote walls, and input of windows for the program (head_session_remote.cpp).
     Result<void> openRemoteWalls();
+    void openWallInput();
+    void takeWindowInput(const input::InputEvent& event);
+    [[nodiscard]] WallPlace wallPlace(int offsetX, const CanvasMillimetres& size);
     Result<ShownProgram> shownProgram();
     [[nodiscard]] std::optional<Viewport> areaOnWall(int node) const; // of the first canvas
     ControlOperations controlOperations();
@@ -320,8 +325,8 @@ private:
     WindowPictures windowPictures_{[this](const WindowPictures::Composed& composed) {
         if (preview_) preview_->offer(composed.frame, composed.picture, composed.wallWidth, composed.wallHeight);
     }};
-    std::unique_ptr<PreviewServer> preview_; // null: the head receives no pictures, or has no socket for pages
-    std::unique_ptr<RemoteInput> remoteInput_;
+    std::unique_ptr<PreviewServer> preview_;   // null: the head receives no pictures, or has no socket for pages
+    std::unique_ptr<WallInput> wallInput_;     // null: no windows send input
     std::unique_ptr<RemoteWalls> remoteWalls_; // null: none
     std::unique_ptr<PictureOutput> output_;    // null: the head receives no pictures
     PlanSequence plans_;

@@ -1,4 +1,4 @@
-// The session's remote walls (mural run --send).
+// The session's remote walls (mural run --send), and input of windows for the program.
 #include <algorithm>
 #include <unistd.h>
 
@@ -7,12 +7,35 @@
 
 namespace mural {
 
+// Called before programs connect, and therefore before the first window.
+void HeadSession::openWallInput() {
+    const bool hasWindows = config_.display == Display::Windows && config_.windowInput != input::InputPermission::Off;
+    if (hasWindows || !config_.sends.empty())
+        wallInput_ = std::make_unique<WallInput>([this] { return shownProgram(); }, getppid());
+}
+
+void HeadSession::takeWindowInput(const input::InputEvent& event) {
+    if (!wallInput_ || config_.windowInput == input::InputPermission::Off) return;
+    wallInput_->take({"the wall windows", "--window-input display", config_.windowInput}, event);
+}
+
+Result<void> HeadSession::nodeWindowInput(int, const input::InputEvent& event) {
+    takeWindowInput(event);
+    return {};
+}
+
+WallPlace HeadSession::wallPlace(int offsetX, const CanvasMillimetres& size) {
+    WallPlace place{offsetX, size, {}};
+    if (config_.windowInput != input::InputPermission::Off)
+        place.onInput = [this](const input::InputEvent& event) { takeWindowInput(event); };
+    return place;
+}
+
 // Called before programs connect, and therefore before the first picture.
 Result<void> HeadSession::openRemoteWalls() {
     if (config_.sends.empty()) return {};
-    remoteInput_ = std::make_unique<RemoteInput>([this] { return shownProgram(); }, getppid());
     auto opened = RemoteWalls::open(config_.sends, config_.launchSecret, currentPlan()->wall.stereo == StereoMode::Quad,
-                                    *remoteInput_);
+                                    *wallInput_);
     if (!opened) return opened.error();
     remoteWalls_ = std::move(*opened);
     return {};

@@ -80,6 +80,7 @@ Result<void> HeadSession::bringUp() {
     openTables();
     goOnWithoutAbsent();
     openPreview();
+    openWallInput();
     if (auto opened = openRemoteWalls(); !opened) return opened;
     auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_);
     if (!server) return server.error();
@@ -108,7 +109,7 @@ PictureOutputConfig HeadSession::outputConfig() {
     output.endOverlay = [this](uint32_t client) { programs_->endOverlay(client); };
     output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
     if (config_.display == Display::Windows)
-        output.openWall = [this] { return options_.openWall({0, currentPlan()->size}); };
+        output.openWall = [this] { return options_.openWall(wallPlace(0, currentPlan()->size)); };
     for (size_t i = 0; i < plan->canvases.size(); ++i) {
         const CanvasPlan& other = plan->canvases[i];
         OtherCanvas& canvas = output.canvases.emplace_back();
@@ -116,7 +117,7 @@ PictureOutputConfig HeadSession::outputConfig() {
         canvas.pairs = other.wall.stereo == StereoMode::Quad;
         if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
         if (headShowsCanvas(config_, other))
-            canvas.openWall = [this, place = WallPlace{other.offsetX, other.size}] { return options_.openWall(place); };
+            canvas.openWall = [this, place = wallPlace(other.offsetX, other.size)] { return options_.openWall(place); };
     }
     output.offerToPages = [this](int64_t frame, const std::shared_ptr<const OwnedPicture>& picture) {
         if (preview_) preview_->offer(frame, picture);

@@ -45,6 +45,7 @@ Result<void> WallScreen::openWindows(bool openGl, bool stereo) {
         options.overlay = config_.overlay;
         options.onWall = onWall(tile);
         options.onInput = config_.onInput;
+        options.hasBorders = config_.hasBorders;
         Result<std::unique_ptr<WallWindow>> window = WallWindow::open(*session_, options);
         if (!window) return window.error();
         windows_.push_back(std::move(window.value()));

@@ -31,6 +31,7 @@ public:
         std::shared_ptr<const Overlay> overlay; // null: none
         OverlayPlace onWall;                    // for the overlay and the input
         WindowInput::OnInput onInput;           // empty: none
+        bool hasBorders = false;
     };
 
     static Result<std::unique_ptr<WallWindow>> open(GlfwSession& session, const Options& options);

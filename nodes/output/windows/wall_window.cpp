@@ -47,7 +47,7 @@ void setHints(const WallWindow::Options& options) {
     // The program keeps the keyboard and pointer focus, and full-screen windows stay when another window is used.
     glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
     glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
-    if (options.onInput)
+    if (options.hasBorders)
         for (const int hint : {GLFW_DECORATED, GLFW_RESIZABLE, GLFW_FOCUSED, GLFW_FOCUS_ON_SHOW})
             glfwWindowHint(hint, GLFW_TRUE);
     glfwWindowHint(GLFW_CENTER_CURSOR, GLFW_FALSE);
@@ -101,7 +101,7 @@ Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session, const
     });
     if (options.onInput) {
         window->input_ = std::make_unique<WindowInput>(options.onInput, window->onWall_);
-        attachInput(window->window_, options.fullScreen);
+        attachInput(window->window_, options.hasBorders && !options.fullScreen);
     }
     if (options.fullScreen)
         glfwSetInputMode(window->window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);

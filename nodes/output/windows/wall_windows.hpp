@@ -52,9 +52,10 @@ struct WallWindowsConfig {
     // Drawn over the pictures when they are shown; null: none. A change of its mode appears within kOverlayMs.
     std::shared_ptr<const Overlay> overlay;
     OverlayPlace wall; // the size of the wall; each window has its own title and part
-    // Takes events of the windows, with places on the wall. Called by the windows' thread; must not block. Empty: the
-    // windows take no input, and have no borders.
+    // Takes events of the windows, with places on the wall. Called by the windows' thread, which shows no picture
+    // meanwhile. Empty: none.
     std::function<void(const input::InputEvent& event)> onInput;
+    bool hasBorders = false;    // the user may move, resize and close the windows, which are focused when they open
     bool waitForRefresh = true; // OpenGl: swaps at the monitor's refresh (once per showAll)
     int64_t openTimeoutMs = 20'000;
     int64_t showTimeoutMs = 5'000; // for show, showAll, arrange, and closing

@@ -45,11 +45,17 @@ void WindowInput::place(const OverlayPlace& onWall) {
     height_ = std::max(onWall.wallHeight, 1);
     left_ = onWall.part.x;
     top_ = height_ - onWall.part.top();
+    setPlace(0, 0); // GLFW reports no move to that pixel before one to another pixel
+}
+
+// Takes the centre of the pixel: its border could become the neighbour by rounding.
+void WindowInput::setPlace(double x, double y) {
+    x_ = std::clamp((left_ + x + 0.5) / width_, 0.0, 1.0);
+    y_ = std::clamp((top_ + y + 0.5) / height_, 0.0, 1.0);
 }
 
 void WindowInput::moved(double x, double y) {
-    x_ = std::clamp((left_ + x) / width_, 0.0, 1.0);
-    y_ = std::clamp((top_ + y) / height_, 0.0, 1.0);
+    setPlace(x, y);
     InputEvent event;
     event.x = x_, event.y = y_;
     event.hasPlace = true;
@@ -99,7 +105,7 @@ void WindowInput::lostFocus() {
     send(std::move(event));
 }
 
-void attachInput(GLFWwindow* window, bool isFullScreen) {
+void attachInput(GLFWwindow* window, bool isResizable) {
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { inputOf(w).moved(x, y); });
     glfwSetMouseButtonCallback(
         window, [](GLFWwindow* w, int button, int action, int) { inputOf(w).pressed(button, action == GLFW_PRESS); });
@@ -112,7 +118,7 @@ void attachInput(GLFWwindow* window, bool isFullScreen) {
     glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int hasFocus) {
         if (hasFocus == GLFW_FALSE) inputOf(w).lostFocus();
     });
-    if (isFullScreen) return; // its size is the monitor's
+    if (!isResizable) return;
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
     inputOf(window).expectSize(width, height);

@@ -29,6 +29,7 @@ public:
     void lostFocus();
 
 private:
+    void setPlace(double x, double y);
     void send(input::InputEvent event) const { onInput_(event); }
 
     const OnInput onInput_;
@@ -37,7 +38,7 @@ private:
     int expectedWidth_ = 0, expectedHeight_ = 0;
 };
 
-// Sets the callbacks of a window whose user pointer is a WallWindow with input().
-void attachInput(GLFWwindow* window, bool isFullScreen);
+// Sets the callbacks of a window whose user pointer is a WallWindow with input(). isResizable: by the user.
+void attachInput(GLFWwindow* window, bool isResizable);
 
 } // namespace mural

@@ -6,9 +6,9 @@
 
 namespace mural {
 
-Result<std::unique_ptr<TileWindows>> TileWindows::open(const NodeSetup& setup) {
+Result<std::unique_ptr<TileWindows>> TileWindows::open(const NodeSetup& setup, OnInput onInput) {
     // the windows open with the first picture, whose size they need
-    return std::unique_ptr<TileWindows>(new TileWindows(setup));
+    return std::unique_ptr<TileWindows>(new TileWindows(setup, std::move(onInput)));
 }
 
 // Returns the window of the node's area, or the windows of its tiles.
@@ -36,6 +36,7 @@ Result<void> TileWindows::reopen(int width, int height) {
     config.positionY = setup_.windowY;
     config.fullScreen = setup_.fullScreen;
     config.overlay = overlay_->overlay();
+    config.onInput = onInput_;
     config.wall.wallWidth = width;
     config.wall.wallHeight = height;
     config.wall.wallWidthMm = setup_.wallWidthMm;

@@ -1,7 +1,9 @@
 // The wall windows of one node: one per tile, or one for its area.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include "common/base/main_window.hpp"
 #include "nodes/output/windows/wall_windows.hpp"
@@ -15,7 +17,9 @@ namespace mural {
 
 class TileWindows {
 public:
-    static Result<std::unique_ptr<TileWindows>> open(const NodeSetup& setup);
+    // onInput: takes the events of the windows, on their thread; empty: none.
+    using OnInput = std::function<void(const input::InputEvent& event)>;
+    static Result<std::unique_ptr<TileWindows>> open(const NodeSetup& setup, OnInput onInput);
     // The overlay over the pictures. Never null.
     [[nodiscard]] const std::shared_ptr<OverlayPart>& overlay() const { return overlay_; }
     // Shows the tiles of the main window (the largest that swaps). With a barrier, waits for its other members.
@@ -27,7 +31,8 @@ public:
     void clientGone(uint32_t client) { mainWindow_.clientGone(client); }
 
 private:
-    explicit TileWindows(const NodeSetup& setup) : setup_(setup), overlay_(std::make_shared<OverlayPart>(setup)) {}
+    TileWindows(const NodeSetup& setup, OnInput onInput)
+        : setup_(setup), onInput_(std::move(onInput)), overlay_(std::make_shared<OverlayPart>(setup)) {}
     [[nodiscard]] std::vector<TileWindow> windowsFor(int width, int height) const;
     Result<void> reopen(int width, int height);
     static int64_t awaitBarrier(SwapBarrier& barrier, const SwapKey& key);
@@ -35,6 +40,7 @@ private:
                             SwapBarrier* barrier);
 
     NodeSetup setup_;
+    const OnInput onInput_;
     const std::shared_ptr<OverlayPart> overlay_;
     std::unique_ptr<WallWindows> windows_;
     int width_ = 0, height_ = 0;

@@ -46,7 +46,10 @@ private:
         return count;
     }
     uint64_t takeOne(uint32_t, const Ack& ack) {
-        if (window_.hasRoom()) window_.sent(++sent_, 1, static_cast<int64_t>(sent_), static_cast<int64_t>(sent_));
+        if (window_.hasRoom()) {
+            const auto nowNs = static_cast<int64_t>(++sent_);
+            window_.sent(sent_, 1, nowNs, nowNs);
+        }
         return window_.acknowledge(ack.frame, 1) ? 1 : 0;
     }
     uint64_t takeOne(uint32_t, const Want& want) {

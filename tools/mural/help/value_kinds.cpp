@@ -9,6 +9,7 @@
 #include "compositor/codecs/registry.hpp"
 #include "compositor/strategies/strategy.hpp"
 #include "nodes/frame_transfer/plane_codecs.hpp"
+#include "nodes/input/input_permission.hpp"
 #include "nodes/overlay/overlay_mode.hpp"
 #include "tools/mural/run/option_choices.hpp"
 
@@ -21,6 +22,12 @@ using Words = std::vector<std::string>;
 template <class E, size_t N> Words namesOf(const Choice<E> (&choices)[N]) {
     Words names;
     std::ranges::transform(choices, std::back_inserter(names), &Choice<E>::name);
+    return names;
+}
+
+Words inputPermissions() {
+    Words names;
+    for (const auto& permission : input::kInputPermissions) names.emplace_back(permission.second);
     return names;
 }
 
@@ -93,6 +100,7 @@ const OptionKind kOptions[] = {
      }},
     {"", "--stereo", [] { return wordsOnly(namesOf(kStereoChoices)); }},
     {"", "--projection", [] { return wordsOnly(namesOf(kProjectionChoices)); }},
+    {"", "--window-input", [] { return wordsOnly(inputPermissions()); }},
     {"", "--overlay", [] { return wordsOnly(overlayModes()); }},
     {"", "--codec", [] { return wordsOnly(codecs()); }},
     {"", "--composition", [] { return wordsOnly(compositions()); }},

@@ -111,6 +111,11 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("N");
     command.add_option("--overlay", a.overlay, "drawn over the wall's windows: off, stats, names, grid (off)")
         ->type_name("MODE");
+    command
+        .add_option("--window-input", a.windowInput,
+                    "pointer and keys of the wall windows for the program: off; on: if it is on a private display; "
+                    "display: also on your own, whose pointer then moves (on)")
+        ->type_name("MODE");
     command.add_flag("--overlay-in-files", a.overlayInFiles, "the overlay also in the pictures of --out");
     command.add_flag("--verify{1}", a.verify, "compare every frame (=N: every Nth) with the program's own picture");
     command.add_flag("--page{127.0.0.1}", a.page,

@@ -37,9 +37,9 @@ Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
 }
 
 Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
-    if ((a.fullScreen || a.position.has_value()) && c.display != Display::Windows) {
-        return Error{std::string(a.fullScreen ? "--fullscreen" : "--position") +
-                     " requires wall windows; add --display windows"};
+    if ((a.fullScreen || a.position || a.windowInput) && c.display != Display::Windows) {
+        const char* const option = a.fullScreen ? "--fullscreen" : a.position ? "--position" : "--window-input";
+        return Error{std::string(option) + " requires wall windows; add --display windows"};
     }
     if (a.native && (a.out.has_value() || a.record.has_value() || a.frameTimes.has_value() || c.verifyEvery > 0)) {
         return Error{std::string(c.verifyEvery > 0 ? "--verify"

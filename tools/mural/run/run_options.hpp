@@ -42,7 +42,7 @@ struct RunArguments {
     bool allLocal = false, printConfig = false;
     bool startsNodes = false; // a new session: without nodes in the options, the batch job gives them
     OptionText stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
-    OptionText localNodes, frames, latency, report, record, frameTimes, overlay;
+    OptionText localNodes, frames, latency, report, record, frameTimes, overlay, windowInput;
     std::string verify; // empty: not given
     std::string page;   // empty: not given
     bool fullScreen = false, noPlacement = false, overlayInFiles = false, explain = false, native = false,

@@ -49,6 +49,12 @@ Result<void> readSizes(const RunArguments& a, SessionConfig& c) {
         if (!mode) return badValue("--overlay", *a.overlay, fmt::format("must be {}", kOverlayModeNames));
         c.overlay = *mode;
     }
+    if (a.windowInput) {
+        const auto permission = input::inputPermissionOf(*a.windowInput);
+        if (!permission)
+            return badValue("--window-input", *a.windowInput, fmt::format("must be {}", input::kInputPermissionNames));
+        c.windowInput = *permission;
+    }
     return {};
 }
 

@@ -35,6 +35,7 @@ public:
     ShowSession(const ShowOptions& options, remote::WallReceiver& receiver) : receiver_(receiver) {
         if (!options.hasWindows) return;
         WallWindowsConfig windows = options.windows;
+        windows.hasBorders = true;
         windows.onInput = [this](const input::InputEvent& event) { receiver_.sendEvent(event); };
         windows_ = std::make_unique<WallSink>(std::move(windows), options.arrange);
     }
