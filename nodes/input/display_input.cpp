@@ -81,9 +81,14 @@ bool DisplayInput::placeWindow() {
     return true;
 }
 
-void DisplayInput::moveTo(double x, double y) {
-    if (!placeWindow()) return;
-    fake(XCB_MOTION_NOTIFY, 0, left_ + pixelAt(x, width_), top_ + pixelAt(y, height_));
+void DisplayInput::moveTo(const InputEvent& event) {
+    if (event.isOfDisplay) {
+        const xcb_screen_t* const screen = xcb_setup_roots_iterator(xcb_get_setup(connection_.get())).data;
+        fake(XCB_MOTION_NOTIFY, 0, pixelAt(event.x, screen->width_in_pixels),
+             pixelAt(event.y, screen->height_in_pixels));
+    } else if (placeWindow()) {
+        fake(XCB_MOTION_NOTIFY, 0, left_ + pixelAt(event.x, width_), top_ + pixelAt(event.y, height_));
+    }
 }
 
 void DisplayInput::button(uint8_t number, bool isDown) {
@@ -142,7 +147,7 @@ void DisplayInput::wheel(double& sum, double add, uint8_t less, uint8_t more) {
 
 void DisplayInput::send(const InputEvent& event) {
     constexpr uint8_t kUp = 4, kDown = 5, kLeft = 6, kRight = 7;
-    if (event.hasPlace) moveTo(event.x, event.y);
+    if (event.hasPlace) moveTo(event);
     if (!reachesProgram(event)) return;
     const auto number = static_cast<uint8_t>(event.button > 3 ? event.button + 4 : event.button); // 4 to 7: the wheel
     switch (event.kind) {

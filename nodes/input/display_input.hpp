@@ -48,7 +48,7 @@ private:
     [[nodiscard]] bool isBelowPointer();
     [[nodiscard]] bool hasFocus();
     void fake(uint8_t type, uint8_t detail, int x = 0, int y = 0);
-    void moveTo(double x, double y);
+    void moveTo(const InputEvent& event);
     bool placeWindow();
     void button(uint8_t number, bool isDown);
     void wheel(double& sum, double add, uint8_t less, uint8_t more);

@@ -14,6 +14,7 @@ struct InputEvent {
     InputKind kind = InputKind::Move;
     double x = 0, y = 0;           // place in the program's window, 0 to 1, from the upper left corner
     bool hasPlace = false;         // x and y are set
+    bool isOfDisplay = false;      // x and y are fractions of the whole display; only from the page
     int button = 1;                // 1: left, 2: middle, 3: right; up to 9
     double wheelX = 0, wheelY = 0; // in 1/120 of a step; positive: right, down
     std::string key;               // KeyboardEvent.key

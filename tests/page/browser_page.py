@@ -223,6 +223,65 @@ def live_pictures(context):
         return ended(context, run, wrong)
 
 
+DIALOG = (150, 100, 120, 60)  # of dialog_window: x, y, width, height
+DIALOG_COLOUR = (0x33, 0x66, 0xcc)
+
+
+def colour_at(jpeg, x, y):
+    """Returns the colour of a pixel of a JPEG or PNG."""
+    done = subprocess.run(["ffmpeg", "-v", "error", "-i", "-", "-vf", "format=rgb24,crop=1:1:%d:%d" % (x, y), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+                          input=jpeg, stdout=subprocess.PIPE, timeout=30, check=True)
+    return tuple(done.stdout[:3])
+
+
+def is_near(colour, wanted):
+    return len(colour) == 3 and all(abs(a - b) <= 8 for a, b in zip(colour, wanted))
+
+
+@cases.case
+def desktop_of_the_program(context):
+    """The private display with a dialog that OpenGL does not draw, and a click into it. Without a private display: one
+    line."""
+    wrong = []
+    command = [context.program("dialog_window"), "--frames", "1000000", "--size", SIZE]
+    x, y = DIALOG[0] + 20, DIALOG[1] + 10
+    with context.run(command, ["--size", SIZE, "--tiles", "2x1", "--display", "app"]) as run:
+        if draws(run) is not True:
+            return draws(run)
+        with Page(context, run) as page, WebSocket(page.url) as viewer:
+            viewer.hello(page.token)
+            reply = viewer.ask("preview", {"class": "full", "of": "desktop"})
+            found = viewer.pictures(3)
+            if not reply["ok"] or len(found) < 3:
+                return "no pictures of the display: %s" % reply
+            header, payload = found[-1]
+            if (header["pictureWidth"], header["pictureHeight"], header["stream"]) != (320, 200, 0xffffffff):
+                wrong.append("a picture has the header %s" % header)
+            if not is_near(colour_at(payload, x, y), DIALOG_COLOUR):
+                wrong.append("the dialog has the colour %s" % (colour_at(payload, x, y),))
+            if is_near(colour_at(payload, 10, 10), DIALOG_COLOUR) or colour_at(payload, 10, 10)[1] < 100:
+                wrong.append("the program's window has the colour %s" % (colour_at(payload, 10, 10),))
+            viewer.ask("input-take")
+            time.sleep(1)  # the display is found with the first request
+            for kind in ("down", "up"):
+                viewer.send({"input": {"seq": 1, "kind": kind, "of": "desktop", "x": (x + 0.5) / 320, "y": (y + 0.5) / 200}})
+            if not run.wait_for_line("dialog button 1 down 20,10", 5):
+                wrong.append("the dialog did not get the click: %s" % [line for line in run.standard_output if "dialog" in line])
+        wrong = ended(context, run, wrong)
+    if wrong:
+        return wrong
+    with session(context) as run:
+        if draws(run) is not True:
+            return draws(run)
+        with Page(context, run) as page, WebSocket(page.url) as viewer:
+            viewer.hello(page.token)
+            time.sleep(1)  # the page finds the display
+            reply = viewer.ask("preview", {"class": "full", "of": "desktop"})
+            if reply["ok"] or "display of its user" not in reply["error"] or viewer.pictures(1, 1):
+                return "the display of the user is shown: %s" % reply
+        return ended(context, run, [])
+
+
 @cases.case
 def one_encoding_for_all(context):
     """Many viewers of one class share its encodings, and one that never acknowledges slows nobody."""

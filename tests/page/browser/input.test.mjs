@@ -85,6 +85,26 @@ test('keys go to the program, also Tab and shortcuts, and Shift F6 leaves', () =
     assert.ok(!ofKind(mock, 'key').some(input => input.key === 'F6'));
 }));
 
+test('the desktop shows the display of the program, and takes its own places', () => inControl({}, async ({ mock, page }) => {
+    const [client] = mock.clients;
+    await page.click('button:text("Desktop")');
+    await until(() => client.previews.get('desktop') && client.previews.get('desktop') !== 'off' && client.previews.get('wall') === 'off', 'the request for the desktop');
+    await page.waitForFunction(() => document.querySelector('[aria-label="Display of the program"]')?.dataset.frame > 0);
+    const box = await boxOf(page);
+    mock.inputs.length = 0;
+    await page.mouse.click(box.x + box.width / 4, box.y + box.height / 2);
+    await until(() => ofKind(mock, 'up').length === 1, 'an event of the button');
+    const [down] = ofKind(mock, 'down');
+    assert.equal(down.of, 'desktop');
+    assert.ok(Math.abs(down.x - 0.25) < 0.01 && Math.abs(down.y - 0.5) < 0.01, `${down.x}, ${down.y}`);
+    await page.click('button:text("Desktop")');
+    await until(() => client.previews.get('wall') !== 'off' && client.previews.get('desktop') === 'off', 'the wall again');
+    mock.inputs.length = 0;
+    await page.mouse.click(box.x + 20, box.y + 20);
+    await until(() => ofKind(mock, 'down').length === 1, 'an event of the wall');
+    assert.equal(ofKind(mock, 'down')[0].of, undefined);
+}));
+
 test('text is pasted and typed', () => inControl({}, async ({ mock, page }) => {
     await page.fill('.paste input', 'Grüße 🙂 "a"');
     await page.click('.paste button');

@@ -85,7 +85,9 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
     if (!options.displayChosen && !usable && !own.empty() && !sized) return unusable;
     if (options.displayChosen && c.display == Display::App && !usable && !sized) return unusable;
     const Display shown = programNeedsOne ? Display::App : Display::Windows; // by default, on a screen
-    if (!options.displayChosen) c.display = usable && !sized ? shown : Display::None;
+    // A page needs pictures, and shows them with the dialogs and menus of the private display.
+    const Display unseen = options.page.empty() ? Display::None : Display::App;
+    if (!options.displayChosen) c.display = usable && !sized ? shown : unseen;
 
     c.displayName = own;
     if ((usable && !sized) || (!programNeedsOne && c.display == Display::None)) return {};

@@ -190,7 +190,7 @@ export class Mock {
         if (client.inFlight >= 2) return;
         for (const [of, kind] of client.previews) {
             if (kind === 'off' || (kind === 'thumb' && this.scene.frame % 12)) continue;
-            const stream = of === 'wall' ? 0 : 1 + of;
+            const stream = of === 'wall' ? 0 : of === 'desktop' ? 0xffffffff : 1 + of;
             const isVideo = this.video && client.hello.canUse?.h264 && stream === 0;
             client.web.send(isVideo ? this.videoUnit(client) : this.jpegFrame(client, stream, kSizes[kind]));
             ++client.inFlight;

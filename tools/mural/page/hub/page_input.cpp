@@ -58,6 +58,12 @@ void PageHub::takeProgram(const Json& program) {
     auto display =
         input::programDisplay(pid, runPid, program.value("display", std::string()), numberOf(program, "window"));
     std::string problem;
+    const bool isPrivate = display && display->isPrivate;
+    pictures_.setDisplay(isPrivate ? std::optional(*display) : std::nullopt,
+                         display && !isPrivate
+                             ? "the program is on a display of its user, which the page does not show; add --size for "
+                               "a private display"
+                             : "");
     if (!display)
         problem = display.error().message;
     else if (!display->isPrivate && !config_.reachesUserDisplay)
@@ -73,8 +79,9 @@ void PageHub::takeProgram(const Json& program) {
 }
 
 void PageHub::watchCursor(int64_t nowNs) {
-    const bool isWatched = pictures_.isWallWatched();
-    if (isWatched) findProgram(nowNs);
+    const bool isWatched = pictures_.isDisplayWatched();
+    // The first viewer's request for the display needs the answer.
+    if (isWatched || (programAskedNs_ == 0 && !viewers_.empty())) findProgram(nowNs);
     cursor_->watch(isWatched ? display_ : std::nullopt);
 }
 

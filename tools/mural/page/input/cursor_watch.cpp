@@ -87,6 +87,11 @@ struct CursorWatch::Eye {
             xcb_query_pointer_reply(connection.get(), xcb_query_pointer(connection.get(), window), nullptr));
         state.isInside = pointer && width > 0 && height > 0 && pointer->win_x >= 0 && pointer->win_y >= 0 &&
                          pointer->win_x < width && pointer->win_y < height;
+        const xcb_screen_t* const screen = xcb_setup_roots_iterator(xcb_get_setup(connection.get())).data;
+        if (pointer) {
+            state.displayX = std::clamp((pointer->root_x + 0.5) / screen->width_in_pixels, 0.0, 1.0);
+            state.displayY = std::clamp((pointer->root_y + 0.5) / screen->height_in_pixels, 0.0, 1.0);
+        }
         if (state.isInside) {
             state.x = (pointer->win_x + 0.5) / width;
             state.y = (pointer->win_y + 0.5) / height;

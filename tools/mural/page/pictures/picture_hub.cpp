@@ -9,7 +9,9 @@
 
 #include "common/base/clock.hpp"
 #include "common/log/log.hpp"
+#include "tools/mural/page/pictures/desktop_feed.hpp"
 #include "tools/mural/page/pictures/encode_picture.hpp"
+#include "tools/mural/page/pictures/picture_feed.hpp"
 
 namespace mural::page {
 
@@ -34,8 +36,9 @@ Result<std::optional<PictureClass>> classOf(const Json& arguments) {
 Result<uint32_t> sourceOf(const Json& arguments) {
     const auto value = arguments.find("of");
     if (value == arguments.end() || *value == "wall") return kWallPicture;
+    if (*value == "desktop") return kDesktopPicture;
     if (value->is_number_unsigned() && value->get<uint64_t>() <= kMaxNode) return 1 + value->get<uint32_t>();
-    return Error{"of: expected \"wall\" or the number of a node"};
+    return Error{"of: expected \"wall\", \"desktop\" or the number of a node"};
 }
 
 } // namespace
@@ -57,12 +60,16 @@ Result<Json> PictureHub::preview(int viewer, ViewerSocket& socket, bool decodesV
     auto source = sourceOf(arguments);
     if (!source) return source.error();
     if (!*wanted) {
-        forget(viewer);
+        // A view of another source may have begun meanwhile.
+        const auto found = viewers_.find(viewer);
+        if (found != viewers_.end() && (!arguments.contains("of") || found->second.key.first == *source))
+            forget(viewer);
         return Json::object();
     }
+    if (*source == kDesktopPicture && !displayProblem_.empty()) return Error{displayProblem_};
     const Key key{*source, **wanted};
     if (!channels_.contains(key)) {
-        auto feed = PictureFeed::connect(io_, path_);
+        auto feed = sourceFor(*source);
         if (!feed) return feed.error();
         channels_[key].feed = std::move(*feed);
     }
@@ -78,6 +85,24 @@ Result<Json> PictureHub::preview(int viewer, ViewerSocket& socket, bool decodesV
     return Json::object();
 }
 
+Result<std::shared_ptr<PictureSource>> PictureHub::sourceFor(uint32_t source) {
+    if (source != kDesktopPicture) {
+        auto feed = PictureFeed::connect(io_, path_);
+        if (!feed) return feed.error();
+        return std::shared_ptr<PictureSource>(std::move(*feed));
+    }
+    auto feed = DesktopFeed::create(io_);
+    feed->use(display_);
+    return std::shared_ptr<PictureSource>(std::move(feed));
+}
+
+void PictureHub::setDisplay(std::optional<input::ProgramDisplay> display, const std::string& problem) {
+    display_ = std::move(display);
+    displayProblem_ = problem;
+    for (auto& [key, channel] : channels_)
+        if (key.first == kDesktopPicture) std::static_pointer_cast<DesktopFeed>(channel.feed)->use(display_);
+}
+
 void PictureHub::acknowledged(int viewer, uint64_t frame, int64_t nowNs) {
     const auto found = viewers_.find(viewer);
     if (found == viewers_.end()) return;
@@ -87,9 +112,14 @@ void PictureHub::acknowledged(int viewer, uint64_t frame, int64_t nowNs) {
 
 void PictureHub::forget(int viewer) { viewers_.erase(viewer); }
 
-bool PictureHub::isWallWatched() const {
+// Returns whether the class shows a pointer.
+bool PictureHub::showsCursor(const Key& key) {
+    return (key.first == kWallPicture || key.first == kDesktopPicture) && key.second != PictureClass::Thumb;
+}
+
+bool PictureHub::isDisplayWatched() const {
     return std::ranges::any_of(viewers_, [](const auto& viewer) {
-        return viewer.second.key.first == kWallPicture && viewer.second.key.second != PictureClass::Thumb;
+        return viewer.second.key.first == kDesktopPicture || showsCursor(viewer.second.key);
     });
 }
 
@@ -101,14 +131,15 @@ void PictureHub::setCursor(const CursorState& cursor) {
 // Sends the shape only if the viewer has another one.
 void PictureHub::sendCursor(Watcher& watcher) {
     constexpr double kWhole = 65535;
-    if (!cursor_.shape || watcher.key.first != kWallPicture || watcher.key.second == PictureClass::Thumb) return;
+    if (!cursor_.shape || !showsCursor(watcher.key)) return;
+    const bool isDesktop = watcher.key.first == kDesktopPicture;
     const bool isNew = watcher.cursorShape != cursor_.shape;
     PartHeader header;
     header.kind = PartKind::Cursor;
-    header.flags = cursor_.isInside ? 0 : kHidden;
-    header.stream = kWallPicture;
-    header.x = static_cast<uint16_t>(std::lround(cursor_.x * kWhole));
-    header.y = static_cast<uint16_t>(std::lround(cursor_.y * kWhole));
+    header.flags = isDesktop || cursor_.isInside ? 0 : kHidden;
+    header.stream = watcher.key.first;
+    header.x = static_cast<uint16_t>(std::lround((isDesktop ? cursor_.displayX : cursor_.x) * kWhole));
+    header.y = static_cast<uint16_t>(std::lround((isDesktop ? cursor_.displayY : cursor_.y) * kWhole));
     header.width = static_cast<uint16_t>(cursor_.hotX);
     header.height = static_cast<uint16_t>(cursor_.hotY);
     header.pictureWidth = static_cast<uint16_t>(cursor_.width);

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -18,7 +19,7 @@
 #include "tools/mural/page/hub/viewer_socket.hpp"
 #include "tools/mural/page/input/cursor_watch.hpp"
 #include "tools/mural/page/pictures/picture_class.hpp"
-#include "tools/mural/page/pictures/picture_feed.hpp"
+#include "tools/mural/page/pictures/picture_source.hpp"
 #include "tools/mural/page/pictures/video_encoder.hpp"
 #include "tools/mural/page/pictures/viewer_flow.hpp"
 #include "tools/mural/page/protocol/picture_part.hpp"
@@ -53,9 +54,12 @@ public:
                                    const nlohmann::json& arguments);
     void acknowledged(int viewer, uint64_t frame, int64_t nowNs);
     void forget(int viewer);
-    // The pointer of the program's display, for viewers of the wall.
+    // The pointer of the program's display, for viewers of the wall and of the display.
     void setCursor(const CursorState& cursor);
-    [[nodiscard]] bool isWallWatched() const;
+    // The program's private display; nullopt: not known yet. problem: why viewers may not see it; empty: they may.
+    void setDisplay(std::optional<input::ProgramDisplay> display, const std::string& problem);
+    // Whether a viewer needs the pointer, or the display itself.
+    [[nodiscard]] bool isDisplayWatched() const;
     // The program has got input of this viewer up to this number.
     void inputReached(int viewer, uint32_t number);
 
@@ -78,7 +82,7 @@ private:
 
     // Pictures of one class of one source.
     struct Channel {
-        std::shared_ptr<PictureFeed> feed;
+        std::shared_ptr<PictureSource> feed;
         int64_t wishedNs = 0; // the last wish
         FeedPicture latest;
         int64_t arrivedNs = 0;
@@ -109,7 +113,9 @@ private:
     void encodeVideo(const Key& key, Channel& channel, bool wantsKey, int64_t nowNs);
     void takeUnit(const Key& key, uint64_t frame, Result<VideoUnit> unit);
     void count(const Key& key, size_t bytes);
+    static bool showsCursor(const Key& key);
     void sendCursor(Watcher& watcher);
+    Result<std::shared_ptr<PictureSource>> sourceFor(uint32_t source);
 
     boost::asio::io_context& io_;
     const std::string path_;
@@ -119,6 +125,8 @@ private:
     std::array<Totals, kPictureClasses> totals_{};
     int wallWidth_ = 0, wallHeight_ = 0;
     CursorState cursor_;
+    std::optional<input::ProgramDisplay> display_;
+    std::string displayProblem_;
     std::shared_ptr<int> alive_ = std::make_shared<int>(0); // expires with this object, for tasks of the encoder
     boost::asio::thread_pool encoder_{1};
 };

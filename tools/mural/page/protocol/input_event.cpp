@@ -51,6 +51,10 @@ bool readMember(std::string_view name, const Json& value, InputEvent& event) {
     }
     if (name == "x") return readFraction(value, event.x);
     if (name == "y") return readFraction(value, event.y);
+    if (name == "of") {
+        event.isOfDisplay = value == "desktop";
+        return event.isOfDisplay || value == "wall";
+    }
     if (name == "button") {
         if (!value.is_number_unsigned() || value.get<uint64_t>() < 1 || value.get<uint64_t>() > kMaxButton)
             return false;

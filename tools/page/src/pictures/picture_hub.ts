@@ -5,7 +5,8 @@ import { parsePictureMessage } from '../wire/picture_message.ts';
 import type { PictureClass } from '../wire/types.ts';
 import { PictureStream } from './picture_stream.ts';
 
-export type PictureOf = 'wall' | number;
+// The wall, the program's private display, or the part of a node.
+export type PictureOf = 'wall' | 'desktop' | number;
 
 export interface HubLink {
     request(op: string, args: Record<string, unknown>): Promise<unknown>;
@@ -20,6 +21,15 @@ const kRanks: PictureClass[] = ['off', 'thumb', 'preview', 'full'];
 // Changes of visibility within this time are one request.
 const kSettleMs = 60;
 const kFirstMs = 2000;
+const kDesktopStream = 0xffffffff;
+
+function streamOf(of: PictureOf): number {
+    return of === 'wall' ? 0 : of === 'desktop' ? kDesktopStream : 1 + of;
+}
+
+function pictureOf(stream: number): PictureOf {
+    return stream === 0 ? 'wall' : stream === kDesktopStream ? 'desktop' : stream - 1;
+}
 
 // Returns the class for a picture of this many device pixels.
 export function classForWidth(pixels: number): PictureClass {
@@ -37,13 +47,13 @@ export class PictureHub {
     }
 
     stream(of: PictureOf): PictureStream {
-        const number = of === 'wall' ? 0 : 1 + of;
+        const number = streamOf(of);
         let stream = this.streams.get(number);
         if (!stream) {
             stream = new PictureStream({
                 onShown: (frame, lastInput, shownMs) => {
                     this.link.send({ ack: { frame, shownMs: Math.round(shownMs * 10) / 10 } });
-                    if (of === 'wall' && lastInput > 0) this.link.onInputShown(lastInput);
+                    if (typeof of === 'string' && lastInput > 0) this.link.onInputShown(lastInput);
                 },
                 onDropped: frame => this.link.send({ ack: { frame, shownMs: 0 } }),
                 onKeyFrameWanted: () => this.renew(of),
@@ -83,7 +93,7 @@ export class PictureHub {
         } catch {
             return;
         }
-        for (const part of parts) this.stream(part.stream === 0 ? 'wall' : part.stream - 1).accept(part);
+        for (const part of parts) this.stream(pictureOf(part.stream)).accept(part);
     }
 
     private settle(): void {
@@ -105,9 +115,10 @@ export class PictureHub {
 
     private ask(of: PictureOf, wanted: PictureClass): void {
         this.requested.set(of, wanted);
-        this.link.request('preview', { class: wanted, of }).catch(() => {
+        this.link.request('preview', { class: wanted, of }).then(() => this.stream(of).setProblem(''), (error: unknown) => {
             // A later change of the demand asks again.
             if (this.requested.get(of) === wanted) this.requested.delete(of);
+            this.stream(of).setProblem(error instanceof Error ? error.message : String(error));
         });
     }
 

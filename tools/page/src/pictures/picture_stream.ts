@@ -38,6 +38,8 @@ export class PictureStream {
     frame = 0;
     coding: Coding = 'none';
     isStill = false;
+    // Why the server sends no pictures; empty: it sends them.
+    problem = '';
     cursor: Cursor | null = null;
     private readonly listeners = new Set<() => void>();
     private readonly arrivals = new Map<number, Arrival>();
@@ -63,6 +65,12 @@ export class PictureStream {
         if (part.kind === PartKind.H264) this.acceptVideo(part);
         else if (part.kind === PartKind.Cursor) this.acceptCursor(part);
         else if (part.kind === PartKind.Jpeg || part.kind === PartKind.Png) this.acceptStill(part);
+    }
+
+    setProblem(problem: string): void {
+        if (this.problem === problem) return;
+        this.problem = problem;
+        this.announce();
     }
 
     // Forgets the decoder, such as after the end of the connection. The picture stays.

@@ -1,4 +1,5 @@
-// Events of an element of the page as input messages for the program. Places are fractions of the program's window.
+// Events of an element of the page as input messages for the program. Places are fractions of the program's window, or
+// of its display.
 
 import type { Session } from './session.ts';
 
@@ -59,6 +60,7 @@ export class ProgramInput {
         private readonly session: Session,
         private readonly element: HTMLElement,
         private readonly onLeave: () => void,
+        private readonly of: 'wall' | 'desktop' = 'wall',
     ) {}
 
     // Begins to send events. Returns the end of that, which releases all that is held.
@@ -95,7 +97,8 @@ export class ProgramInput {
     }
 
     private send(kind: string, members: Record<string, unknown> = {}): void {
-        this.session.send({ input: { seq: this.session.input.next(), kind, ...members } });
+        const of = this.of === 'desktop' ? { of: this.of } : {};
+        this.session.send({ input: { seq: this.session.input.next(), kind, ...of, ...members } });
     }
 
     private place(event: { clientX: number; clientY: number }): { x: number; y: number } {
