@@ -109,7 +109,8 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
 }
 
 std::string unseenPictures(const RunOptions& options, const PreparedRun& run) {
-    if (!options.displayChosen || run.config.display != Display::App || !run.display) return {};
+    if (!options.displayChosen || run.config.display != Display::App || !run.display || !options.page.empty())
+        return {};
     return "--display app: the program's window is on a private display of the wall's size (" + run.display->name() +
            "), which no screen shows; --display windows shows the wall, --out saves its pictures";
 }
