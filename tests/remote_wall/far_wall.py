@@ -15,8 +15,8 @@ import time
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path[:0] = [os.path.join(TOP, "tests", "end_to_end"), os.path.join(TOP, "tests", "remote_wall")]
 from harness import cases, own_network, pictures, processes  # noqa: E402
+from harness.slow_link import SlowLink  # noqa: E402
 from shown_wall import Wall, secret  # noqa: E402
-from slow_link import SlowLink  # noqa: E402
 
 HERE, MUSEUM = "192.0.2.1", "192.0.2.2"
 PORT = 4281

@@ -16,7 +16,7 @@
 namespace mural::page {
 
 struct CursorState {
-    double x = 0, y = 0; // fractions of the program's window, from the upper left corner
+    double x = 0, y = 0;               // fractions of the program's window, from the upper left corner
     double displayX = 0, displayY = 0; // the same of the display
     bool isInside = false;
     int hotX = 0, hotY = 0, width = 0, height = 0; // pixels of the shape
