@@ -25,6 +25,7 @@ struct PreviewTileHeader {
 static_assert(sizeof(PreviewTileHeader) == 56);
 
 constexpr uint32_t kMaxPreviewSide = 16384;
+constexpr uint32_t kMaxPreviewTiles = 1024;      // of a node
 constexpr uint32_t kMaxPreviewBytes = 64u << 20; // of a tile
 
 } // namespace mural::wire

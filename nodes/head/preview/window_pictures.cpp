@@ -12,8 +12,9 @@ bool isSound(const wire::PreviewTileHeader& header) {
     const auto isSide = [](uint32_t side) { return side > 0 && side <= wire::kMaxPreviewSide; };
     return isSide(header.pictureWidth) && isSide(header.pictureHeight) && header.wallWidth > 0 &&
            header.wallHeight > 0 && header.wallWidth <= INT32_MAX && header.wallHeight <= INT32_MAX &&
-           header.tile < header.tiles && header.x >= 0 && header.y >= 0 && header.w >= 0 && header.h >= 0 &&
-           int64_t{header.x} + header.w <= header.pictureWidth && int64_t{header.y} + header.h <= header.pictureHeight;
+           header.tile < header.tiles && header.tiles <= wire::kMaxPreviewTiles && header.x >= 0 && header.y >= 0 &&
+           header.w >= 0 && header.h >= 0 && int64_t{header.x} + header.w <= header.pictureWidth &&
+           int64_t{header.y} + header.h <= header.pictureHeight;
 }
 
 bool isSameSize(const wire::PreviewTileHeader& a, const wire::PreviewTileHeader& b) {
@@ -24,12 +25,18 @@ bool isSameSize(const wire::PreviewTileHeader& a, const wire::PreviewTileHeader&
 
 wire::WantPreviewCommand WindowPictures::begin(uint32_t maxWidth, uint32_t maxHeight) {
     const std::lock_guard lock(mutex_);
-    return {++number_, std::min(maxWidth, wire::kMaxPreviewSide), std::min(maxHeight, wire::kMaxPreviewSide)};
+    const wire::WantPreviewCommand request{++number_, std::min(maxWidth, wire::kMaxPreviewSide),
+                                           std::min(maxHeight, wire::kMaxPreviewSide)};
+    mostWidth_ = std::max(mostWidth_, request.maxWidth);
+    mostHeight_ = std::max(mostHeight_, request.maxHeight);
+    return request;
 }
 
 Result<void> WindowPictures::add(int node, const wire::PreviewTileHeader& header, std::span<const std::byte> jpeg) {
     if (!isSound(header)) return Error{"it sent a preview with an invalid place"};
     const std::lock_guard lock(mutex_);
+    if (header.pictureWidth > mostWidth_ || header.pictureHeight > mostHeight_)
+        return Error{"it sent a preview that is larger than requested"};
     Tile& tile = tiles_[{node, header.tile}];
     if (!jpeg.empty() && !pictureOfJpeg(jpeg, header.w, header.h, tile.picture))
         return Error{"it sent a preview that is no picture of its size"};

@@ -47,6 +47,7 @@ private:
     const OnPicture onPicture_;
     std::mutex mutex_; // guards the members below
     uint32_t number_ = 0;
+    uint32_t mostWidth_ = 0, mostHeight_ = 0;        // that any request has permitted
     std::map<std::pair<int, uint32_t>, Tile> tiles_; // by node and tile
     // Of the latest composed picture. Frames of the wall increase, while those of a further program begin again.
     uint32_t client_ = 0, frame_ = 0, width_ = 0;

@@ -40,10 +40,11 @@ protected:
         latest_ = composed;
         ++composed_;
     }};
+    const wire::WantPreviewCommand request_ = pictures_.begin(40, 20);
 };
 
 TEST_F(WindowPicturesTest, composesWhenAllNodesHaveReplied) {
-    EXPECT_EQ(pictures_.begin(20, 20).number, 1u);
+    EXPECT_EQ(request_.number, 1u);
     ASSERT_TRUE(pictures_.add(0, half(0, 1, 5), grey(40)).ok());
     ASSERT_TRUE(pictures_.add(1, half(1, 1, 5), grey(200)).ok());
     ASSERT_TRUE(pictures_.add(0, half(0, 2, 6), grey(80)).ok());
@@ -95,6 +96,12 @@ TEST_F(WindowPicturesTest, refusesInvalidReplies) {
     auto huge = half(0, 1, 1);
     huge.pictureWidth = wire::kMaxPreviewSide + 1;
     EXPECT_FALSE(pictures_.add(0, huge, grey(1)).ok());
+    auto larger = half(0, 1, 1);
+    larger.pictureWidth = 41;
+    EXPECT_FALSE(pictures_.add(0, larger, grey(1)).ok()) << "larger than requested";
+    auto many = half(0, 1, 1);
+    many.tiles = wire::kMaxPreviewTiles + 1;
+    EXPECT_FALSE(pictures_.add(0, many, grey(1)).ok());
     auto none = half(0, 1, 1);
     none.tiles = 0;
     EXPECT_FALSE(pictures_.add(0, none, grey(1)).ok());
