@@ -1,6 +1,7 @@
 #include "nodes/frame_transfer/scale_picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -12,6 +13,8 @@ namespace {
 // Weights of source pixels per target pixel in one direction, as integers of 1/4096, so that all machines round
 // equally.
 constexpr int64_t kOne = 4096;
+constexpr uint32_t kHalf = 1U << 23; // of 2^24, the product of both weights
+constexpr size_t kChannels = 4;
 
 class Weights {
 public:
@@ -63,6 +66,18 @@ private:
     std::vector<Part> parts_;
 };
 
+// Writes the sum of the drawn rows of a shown row, times their weights. At most 255 * kOne per channel.
+void weighRows(const Weights& rows, size_t shown, const uint8_t* pixels, size_t rowBytes, std::vector<uint32_t>& line) {
+    for (const auto* row = rows.begin(shown); row != rows.end(shown); ++row) {
+        const uint8_t* const from = pixels + static_cast<size_t>(row->pixel) * rowBytes;
+        const uint32_t weight = row->weight;
+        if (row == rows.begin(shown))
+            for (size_t i = 0; i < line.size(); ++i) line[i] = from[i] * weight;
+        else
+            for (size_t i = 0; i < line.size(); ++i) line[i] += from[i] * weight;
+    }
+}
+
 } // namespace
 
 void scalePicture(const DrawnPicture& from, const Zoom& zoom, const PixelViewport& r, std::byte* into,
@@ -71,21 +86,24 @@ void scalePicture(const DrawnPicture& from, const Zoom& zoom, const PixelViewpor
     const Weights columns(r.x, r.right(), zoom.x, from.area.x, from.area.w),
         rows(r.y, r.top(), zoom.y, from.area.y, from.area.h);
     const auto* const pixels = reinterpret_cast<const uint8_t*>(from.pixels);
-    const auto width = static_cast<size_t>(from.area.w);
+    // Only the columns of r.
+    const auto left = static_cast<size_t>(columns.begin(0)->pixel);
+    const auto right = static_cast<size_t>((columns.end(columns.size() - 1) - 1)->pixel) + 1;
+    std::vector<uint32_t> line((right - left) * kChannels); // the drawn rows of one shown row, weighted
     for (size_t y = 0; y < rows.size(); ++y) {
+        weighRows(rows, y, pixels + left * kChannels, static_cast<size_t>(from.area.w) * kChannels, line);
         auto* to = reinterpret_cast<uint8_t*>(into) +
                    (static_cast<size_t>(r.y - box.y + static_cast<int32_t>(y)) * static_cast<size_t>(box.w) +
                     static_cast<size_t>(r.x - box.x)) *
-                       4;
-        for (size_t x = 0; x < columns.size(); ++x) {
-            uint32_t sums[4] = {1 << 23, 1 << 23, 1 << 23, 1 << 23}; // fixed point: 2^24 is one
-            for (const auto* row = rows.begin(y); row != rows.end(y); ++row) {
-                const uint8_t* const line = pixels + static_cast<size_t>(row->pixel) * width * 4;
-                for (const auto* column = columns.begin(x); column != columns.end(x); ++column)
-                    for (size_t c = 0; c < 4; ++c)
-                        sums[c] += line[static_cast<size_t>(column->pixel) * 4 + c] * (row->weight * column->weight);
+                       kChannels;
+        for (size_t x = 0; x < columns.size(); ++x, to += kChannels) {
+            std::array<uint32_t, kChannels> sums;
+            sums.fill(kHalf);
+            for (const auto* column = columns.begin(x); column != columns.end(x); ++column) {
+                const uint32_t* const at = line.data() + (static_cast<size_t>(column->pixel) - left) * kChannels;
+                for (size_t c = 0; c < kChannels; ++c) sums[c] += at[c] * column->weight;
             }
-            for (const uint32_t sum : sums) *to++ = static_cast<uint8_t>(sum >> 24);
+            for (size_t c = 0; c < kChannels; ++c) to[c] = static_cast<uint8_t>(sums[c] >> 24);
         }
     }
 }

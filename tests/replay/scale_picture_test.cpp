@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include "nodes/player/pixel_mapping.hpp"
@@ -62,6 +63,26 @@ TEST(ScalePicture, averagesToReduce) {
 }
 
 // For any zoom, brightness does not increase, and a uniform picture stays exactly uniform.
+TEST(ScalePicture, writesAPartAsTheWhole) {
+    const PixelViewport box{40, 20, 60, 40};
+    for (const Zoom& zoom : {Zoom{0.4, 0.7}, Zoom{1.6, 2.3}, Zoom{0.5, 3}}) {
+        RenderPass pass;
+        pass.zoom = zoom;
+        const PixelViewport area = inPass(pass, box);
+        std::mt19937 random(3);
+        std::vector<std::byte> drawn(static_cast<size_t>(area.area()) * 4);
+        for (std::byte& b : drawn) b = static_cast<std::byte>(random() & 255);
+        const auto whole = scaled(drawn, area, zoom, box);
+        const PixelViewport part{57, 31, 22, 9};
+        std::vector<std::byte> into(whole.size());
+        scalePicture({drawn.data(), area}, zoom, part, into.data(), box);
+        for (int y = 0; y < box.h; ++y)
+            for (int x = 0; x < box.w; ++x)
+                ASSERT_EQ(at(into, box, x, y), part.contains({box.x + x, box.y + y, 1, 1}) ? at(whole, box, x, y) : 0)
+                    << x << "," << y << " by " << zoom.x;
+    }
+}
+
 TEST(ScalePicture, keepsBrightness) {
     for (const Zoom zoom : {Zoom{1.5, 1.5}, Zoom{2.7, 0.6}, Zoom{0.3, 7.9}, Zoom{16, 1.01}, Zoom{1.999, 15.5}}) {
         RenderPass pass;
