@@ -69,7 +69,9 @@ Result<void> readWindows(const ShowArguments& a, ShowOptions& options) {
 
 Result<void> readWall(const ShowArguments& a, ShowOptions& options) {
     options.arrange = [](int width, int height) {
-        return windowsOfTiles(TileGrid{1, 1, 1}, {0, 0, 1, 1}, width, height);
+        auto windows = windowsOfTiles(TileGrid{1, 1, 1}, {0, 0, 1, 1}, width, height);
+        windows.front().title = "Mural remote wall";
+        return windows;
     };
     if (!a.size.empty() && !a.config.empty())
         return Error{"--size and --config both state the size of the wall; omit one of them"};
