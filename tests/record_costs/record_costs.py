@@ -63,7 +63,8 @@ def costs_lie_where_the_program_draws(lab):
             return 'sums %g of the cells and %g of the range' % (sum(cells), sum(ranges))
     cells = [sum(frame['cells'][i] for frame in frames) for i in range(COLUMNS * ROWS)]
     print('   share of each cell, lowest row first: %s' % ' '.join('%.2f' % (cell / sum(cells)) for cell in cells))
-    if cells.index(max(cells)) != 0 or cells[0] < 0.4 * sum(cells):
+    # An even cost is 0.08. On a busy machine other processes add to every cell.
+    if cells.index(max(cells)) != 0 or cells[0] < 0.25 * sum(cells):
         return 'the lower left cell has the layers, but the costs are %s' % cells
     compared = lab.run(['simulate', '--cost', trace, '--nodes', '4', '--compare'])
     if compared.returncode != 0 or 'costmap' not in compared.stdout:
