@@ -18,6 +18,7 @@ WIDTH, HEIGHT = 320, 200
 SHIFT = (40, 30)  # of the wall on the screen
 MOTION, KEY_DOWN, KEY_UP, PRESS, RELEASE = 6, 2, 3, 4, 5  # types of X events
 KEYCODE_A = 38
+NEVER_SECONDS = 2  # for a click that must not arrive
 BEZELS = """#Equalizer 1.2 ascii
 server { config {
   appNode { pipe {
@@ -69,7 +70,7 @@ def session(context, *options, size=True, shift=SHIFT):
     return context.run(command, ["--display", "windows", *place, *options])
 
 
-def wrong_places(context, run, places):
+def wrong_places(context, run, places, seconds=5):
     """Clicks at places of the screen. places: (x, y) of the screen: (x, y) of the program's window."""
     if not processes.until(lambda: any("frame 5" in line for line in list(run.standard_output)), 30):
         return "no frame: " + " | ".join(run.standard_error[-5:])
@@ -80,7 +81,7 @@ def wrong_places(context, run, places):
             number = 1 + button % 3
             hand.click(SHIFT[0] + screen[0], SHIFT[1] + screen[1], number)
             line = "button %d down %d,%d" % (number, *place)
-            if not has_line(run, line) or not has_line(run, line.replace("down", "up")):
+            if not has_line(run, line, seconds) or not has_line(run, line.replace("down", "up")):
                 return "no \"%s\": %s" % (line, [got for got in run.standard_output if "button" in got][-3:] + run.standard_error[-3:])
         hand.tap(KEYCODE_A)
         if not has_line(run, "key 61 down") or not has_line(run, "key 61 up"):
@@ -140,7 +141,7 @@ def clicks_own_display(context, shift, line):
 def own_display(context):
     """A program on the display of its user: one line says why no click arrives, unless --window-input display."""
     with session(context, "--tiles", "2x1", size=False) as run:
-        wrong = wrong_places(context, run, {(300, 150): (300, 150)})
+        wrong = wrong_places(context, run, {(300, 150): (300, 150)}, NEVER_SECONDS)
         lines = [line for line in run.standard_error if "--window-input display" in line]
         if wrong is None or len(lines) != 1:
             return "the click arrived, or no line says why not: %s" % run.standard_error
@@ -153,7 +154,7 @@ def own_display(context):
 def off(context):
     """--window-input off: nothing arrives, and nothing is reported."""
     with session(context, "--tiles", "2x1", "--window-input", "off") as run:
-        wrong = wrong_places(context, run, {(300, 150): (300, 150)})
+        wrong = wrong_places(context, run, {(300, 150): (300, 150)}, NEVER_SECONDS)
         lines = [line for line in run.standard_error if "input" in line]
     return None if wrong is not None and not lines else "the click arrived, or a line: %s" % lines
 

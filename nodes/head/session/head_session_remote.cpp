@@ -41,13 +41,18 @@ Result<void> HeadSession::openRemoteWalls() {
     return {};
 }
 
-// The program whose picture the wall shows.
+// The program whose picture the wall shows. Before the first frame: the first program, which may show a dialog.
 Result<ShownProgram> HeadSession::shownProgram() {
     const FrameTracker::ShownWindow shown = frames_.shownWindow();
-    if (shown.client == 0) return Error{"no program draws at the moment; start one, or wait for its first frame"};
-    ShownProgram result;
-    result.client = shown.client;
     const auto programs = programs_->status();
+    ShownProgram result;
+    if (shown.client == 0 && !programs.empty()) {
+        result.client = programs.front().id;
+        result.pid = programs.front().pid;
+        return result;
+    }
+    if (shown.client == 0) return Error{"no program draws at the moment; start one, or wait for its first frame"};
+    result.client = shown.client;
     const auto program = std::ranges::find(programs, shown.client, &ProgramStatus::id);
     if (program != programs.end()) result.pid = program->pid;
     const auto window = nativeWindowOf(shown.client, 0, shown.native);
