@@ -24,6 +24,7 @@ from harness.ssh_hosts import SshHosts
 import harness.slurm_cluster
 import harness.ssh_hosts
 
+TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 HOSTS = ["wall1", "wall2", "wall3"]
 NODES = r"(starter|mural node) ?"
 FRAMES = 40
@@ -283,6 +284,33 @@ def pmix_of_srun(lab):
         return None
     with lab.run("--tiles", "2x1", "--verify", "--explain", before=("srun", "--mpi=pmix", "-n3", "-N1")) as run:
         return ended(run, 0, [" 0 differ", "nodes start by pmix: this is rank 0 of 3 processes"], ["was lost"])
+
+
+def sample_job(lab, sample, *options):
+    """Runs a batch script of configs/launch as the guide describes it, with other numbers of hosts."""
+    script = os.path.join(TOP, "configs", "launch", sample)
+    program = os.path.join(lab.build, "tests", "programs", "long_run")
+    path = os.path.join(lab.build, "bin") + ":" + os.environ["PATH"]
+    folder = tempfile.mkdtemp(dir=lab.folder)
+    command = ["sbatch", "--wait", "-D", folder, *options, script, program, "--frames", str(FRAMES), "--size", "250x190"]
+    with session.Session(command, lab.display, {**lab.environment, "PATH": path}) as run:
+        wrong = ended(run, 0, seconds=120)
+    text = "".join(open(name, encoding="utf-8").read() for name in glob.glob(os.path.join(folder, "wall.*.log")))
+    pictures = glob.glob(os.path.join(folder, "wall.*", "frame-*.png"))
+    return wrong or (None if len(pictures) == FRAMES and "was lost" not in text else "%d pictures: %s" % (len(pictures), text))
+
+
+@case("slurm")
+def sample_script(lab):
+    return sample_job(lab, "wall.sbatch", "-N2")
+
+
+@case("slurm")
+def sample_script_of_pmix(lab):
+    if not glob.glob("/usr/lib/*/pmix2/lib/libpmix.so"):
+        print("wall-pmix.sbatch is not tested: libpmix-dev is not installed (tools/install-deps test)")
+        return None
+    return sample_job(lab, "wall-pmix.sbatch", "-N1", "--ntasks-per-node=3")
 
 
 @case("slurm")
