@@ -146,8 +146,8 @@ private:
     void nodeLost(int node, const std::string& why) override;
 
     // Statistics of frames (head_session_statistics.cpp).
-    // Returns the frames from this number on that are complete, at most the given number of the newest ones, with the
-    // state of the session, and requests statistics for some seconds. Thread-safe.
+    // Returns complete frames from this number on, with the state of the session. Of more than the given number it
+    // returns the newest. Requests statistics for some seconds. Thread-safe.
     nlohmann::json framesJson(uint64_t sinceFrame, size_t newest);
     void addFramesOperation(ControlOperations& operations);
     Result<void> recordFrame(int node, const wire::FrameDoneMessage& message, Result<void> counted);
