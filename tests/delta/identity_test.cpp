@@ -95,8 +95,8 @@ TEST(Identity, holdsWithLargeDictionaries) {
 }
 
 TEST(Identity, holdsWithTinyDictionaries) {
-    constexpr uint32_t kSeeds = mural::testing::kSanitized ? 8 : 20;
-    for (uint32_t seed = 1; seed <= kSeeds; ++seed) compare(tinyLimits(), seed, 1 + seed % 5, 60);
+    // at least five seeds, one for each number of streams
+    for (uint32_t seed = 1; seed <= mural::testing::rounds(40); ++seed) compare(tinyLimits(), seed, 1 + seed % 5, 60);
 }
 
 TEST(Identity, holdsWithLogsOfOneItemAndOnePage) {
