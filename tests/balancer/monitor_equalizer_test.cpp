@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "balancer/compound/even_split.hpp"
+#include "balancer/compound/plan_frame.hpp"
 #include "balancer/equalizers/make_equalizers.hpp"
 #include "balancer/equalizers/monitor_equalizer.hpp"
 #include "tests/balancer/text_config.hpp"
@@ -66,6 +67,20 @@ TEST_F(MonitorEqualizerTest, placesEachPictureAtItsPartOfTheView) {
     EXPECT_EQ(inputs[1]->x, 0);
     EXPECT_EQ(inputs[1]->zoom, (Zoom{360. / 640, 120. / 480}));
     EXPECT_TRUE(equalizer->lastDecision().moved);
+}
+
+TEST_F(MonitorEqualizerTest, placesThePicturesOfThePlan) {
+    places();
+    const compound::FramePlan plan = planFrame(loaded.resolved, input);
+    std::vector<std::pair<int32_t, Zoom>> uses;
+    for (const auto& channel : plan.channels)
+        for (const auto& task : channel.tasks)
+            for (const auto& use : task.inputs) {
+                EXPECT_EQ(use.y, 0);
+                uses.emplace_back(use.x, use.zoom);
+            }
+    EXPECT_EQ(uses,
+              (std::vector<std::pair<int32_t, Zoom>>{{360, {120. / 320, 120. / 480}}, {0, {360. / 640, 120. / 480}}}));
 }
 
 TEST_F(MonitorEqualizerTest, movesOnlyWhenSizesChange) {
