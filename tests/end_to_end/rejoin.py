@@ -218,10 +218,10 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
         missing = [frame for first, end in whole for frame in range(first, end) if frame not in exact]
         if missing:
             return "frames %s are not exact; they should be from %s" % (missing[:8], whole)
-        if len(exact) == frames:
-            return "no picture was incomplete; check that a process was killed"
         if longest > LONGEST_MS:
             return "a frame took %.1f s" % (longest / 1000)
+        # The returns prove that processes were killed. Pictures need not lack anything: other nodes take the chunks of a
+        # node that is killed between two frames.
         joins, wanted = sum(node["joins"] for node in report), sum(map(len, rounds))
         if joins != wanted:
             return "%d returns instead of %d: %s" % (joins, wanted, " | ".join(run.standard_error[-6:]))
