@@ -239,7 +239,7 @@ def queues_pass_on_the_items_of_lost_nodes(context):
 
 @cases.case
 def barriers_release_nodes_and_application_together(context):
-    frames = 200
+    frames = LONGEST  # time for the return of the node, also on a busy machine
     wrong, shown, lines = draw(context, "--db 3", frames, during=kill_one(3), words=["--work", "barrier"], last=20)
     entered = [int(line.split()[-1]) for line in lines if line.startswith("entered ")]
     wrong = wrong or differing(single(context, frames, last=20), shown)
