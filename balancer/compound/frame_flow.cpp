@@ -74,13 +74,21 @@ public:
           frames_(plan.frames.size()),
           ready_(plan.frames.size(), false) {}
 
-    std::vector<Flow> run() {
+    std::vector<Flow> flows() {
         for (size_t c = 0; c < flows_.size(); ++c) {
             const Tree& tree = treeOf(rootOf(plan_.contexts[c].compound));
             flows_[c].steered = tree.steers && !tree.queues;
             flows_[c].ignored = tree.steers && tree.queues;
         }
-        if (std::ranges::none_of(flows_, &Flow::steered)) return flows_;
+        const bool isWhole = std::ranges::none_of(flows_, &Flow::steered) || run();
+        return isWhole ? flows_ : std::vector<Flow>(plan_.contexts.size());
+    }
+
+    std::vector<ShownCopy> copies() { return run() ? copies_ : std::vector<ShownCopy>{}; }
+
+private:
+    // Returns false at a deadlock, which was reported when the file was checked.
+    bool run() {
         std::vector<size_t> next(plan_.pipes.size(), 0);
         for (bool moved = true; moved;) {
             moved = false;
@@ -91,12 +99,10 @@ public:
                 }
         }
         for (size_t p = 0; p < next.size(); ++p)
-            // deadlock, reported when the file was checked
-            if (next[p] < plan_.pipes[p].size()) return std::vector<Flow>(plan_.contexts.size());
-        return flows_;
+            if (next[p] < plan_.pipes[p].size()) return false;
+        return true;
     }
 
-private:
     [[nodiscard]] Index rootOf(Index compound) const {
         while (config_.compounds[at(compound)].parent != kNone) compound = config_.compounds[at(compound)].parent;
         return compound;
@@ -211,11 +217,22 @@ private:
         for (const RenderContext& c : plan_.contexts) {
             if (c.channel != channel || c.destination != channel || !taken.insert(&bufferOf(c)).second) continue;
             for (const Layer& l : within(bufferOf(c), rectangle(shown))) {
-                if (plan_.contexts[at(l.context)].destination != channel || !flows_[at(l.context)].steered) continue;
+                if (plan_.contexts[at(l.context)].destination != channel) {
+                    takeCopy(l, channel, shown);
+                    continue;
+                }
+                if (!flows_[at(l.context)].steered) continue;
                 const ShownPart part = partOf(l, shown);
                 if (!part.from.empty()) flows_[at(l.context)].parts.push_back(part);
             }
         }
+    }
+
+    void takeCopy(const Layer& l, Index channel, const PixelViewport& shown) {
+        const RenderContext& c = plan_.contexts[at(l.context)];
+        if (c.eye == Eye::Right || c.viewport.empty()) return;
+        const Viewport drawn{0, 0, double(c.viewport.w), double(c.viewport.h)};
+        copies_.push_back({l.context, channel, relativeTo(l.from, drawn), relativeTo(l.to, rectangle(shown))});
     }
 
     // One axis: the position of pixels among those of the destination, which ends at `end`, and the width that they
@@ -285,6 +302,7 @@ private:
     const FrameInput& input_;
     const FramePlan& plan_;
     std::vector<Flow> flows_;
+    std::vector<ShownCopy> copies_;
     std::vector<Layers> frames_;
     std::vector<bool> ready_;
     std::map<Index, Tree> trees_; // by root compound
@@ -294,7 +312,21 @@ private:
 } // namespace
 
 std::vector<Flow> flowOf(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) {
-    return Walk(config, input, plan).run();
+    return Walk(config, input, plan).flows();
+}
+
+std::vector<ShownCopy> copiesOf(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) {
+    std::map<Index, Index> destinations; // by compound
+    for (const RenderContext& c : plan.contexts) destinations.emplace(c.compound, c.destination);
+    const auto isOfOthers = [&](const PlannedTask& task, const FrameUse& use) {
+        const auto producer = destinations.find(plan.frames[at(use.frame)].compound);
+        return producer != destinations.end() && producer->second != plan.contexts[at(task.context)].destination;
+    };
+    for (const ChannelPlan& channel : plan.channels)
+        for (const PlannedTask& task : channel.tasks)
+            for (const FrameUse& use : task.inputs)
+                if (isOfOthers(task, use)) return Walk(config, input, plan).copies();
+    return {}; // all frames come from channels of their own destination, the usual case
 }
 
 } // namespace mural::compound

@@ -22,7 +22,18 @@ struct Flow {
     std::vector<ShownPart> parts; // of a steered draw; disjoint, except with parts of other draws
 };
 
+// A part of a draw that a channel shows although the draw belongs to another destination: a picture on a monitor.
+struct ShownCopy {
+    Index context = kNone; // of the draw
+    Index channel = kNone; // that shows it
+    Viewport from;         // part of the draw
+    Viewport to;           // part of the channel
+};
+
 // Returns the flow of each context. Contexts without a draw have no parts.
 std::vector<Flow> flowOf(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan);
+
+// Returns the copies of all channels, of one eye.
+std::vector<ShownCopy> copiesOf(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan);
 
 } // namespace mural::compound

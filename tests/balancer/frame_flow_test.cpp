@@ -51,6 +51,34 @@ void expectNear(const Viewport& v, double x, double y, double w, double h) {
 
 } // namespace
 
+// "t" belongs to the channel "d", which is on the wall with "m". The monitor "m" shows the upper half of "d".
+TEST(FrameFlow, findsCopiesOnOtherDestinations) {
+    const std::string text =
+        "#Equalizer 1.2 ascii\nconfig { appNode { pipe { window { viewport [ 0 0 400 200 ] channel { name \"d\" } } "
+        "window { viewport [ 0 0 100 200 ] channel { name \"m\" } } window { viewport [ 0 0 400 200 ] channel { name "
+        "\"t\" } } } } layout { view { } } canvas { layout 0 wall { } segment { channel \"d\" viewport [ 0 0 .5 1 ] } "
+        "segment { channel \"m\" viewport [ .5 0 .5 1 ] } } compound { compound { channel ( segment 0 view 0 ) "
+        "compound { channel \"t\" viewport [ 0 0 .5 1 ] outputframe { } } inputframe { name \"frame.t\" } compound { "
+        "viewport [ .5 0 .5 1 ] } outputframe { name \"up\" viewport [ 0 .5 1 .5 ] } } compound { channel ( segment 1 "
+        "view 0 ) inputframe { name \"up\" } } } }";
+    config::Diagnostics diagnostics("f");
+    const ResolvedConfig c = config::resolve(config::parseConfig(text, diagnostics), {}, diagnostics);
+    ASSERT_EQ(diagnostics.errors(), 0) << diagnostics.firstError();
+    const FrameInput input = firstFrame(c);
+    const FramePlan plan = planFrame(c, input);
+    const auto copies = copiesOf(c, input, plan);
+    ASSERT_EQ(copies.size(), 2u) << "of t's half and of d's";
+    double right = 0;
+    for (const ShownCopy& copy : copies) {
+        EXPECT_EQ(c.channels[ResolvedConfig::at(copy.channel)].name, "m");
+        expectNear(copy.from, 0, .5, 1, .5);
+        EXPECT_NEAR(copy.to.w, .5, 1e-9);
+        EXPECT_NEAR(copy.to.h, 1, 1e-9);
+        right += copy.to.x;
+    }
+    EXPECT_NEAR(right, .5, 1e-9);
+}
+
 TEST(FrameFlow, isTrivialWithoutViewportsAndZooms) {
     EXPECT_FALSE(
         flowOfDraw("compound { channel \"t\" zoom [ .5 .5 ] outputframe { } } inputframe { name \"frame.t\" }", "t")

@@ -24,6 +24,7 @@ SIZE = "250x190"
 PAUSE_US = "1000" if length.LONG else "40000"  # per frame; a session without pauses takes the CPU time of other tests
 LAYOUTS = os.path.join(TOP, "configs", "layouts.eqc")
 CANVASES = os.path.join(TOP, "configs", "wall-and-monitor.eqc")
+MONITOR = os.path.join(TOP, "configs", "monitor.eqc")
 
 
 def change(context, run, *options):
@@ -153,6 +154,13 @@ def one_canvas_of_two(context):
     """The nodes of the other canvas continue."""
     changes = [layout("monitor", "off", 0, 1), layout("monitor", "all", 1, 0), layout("monitor", "off", 0, 1)]
     return exact_changes(context, ["--config", CANVASES, "--all-local", "--display", "none"], changes)
+
+
+@cases.case
+def a_canvas_without_nodes(context):
+    """The monitor shows pictures of the wall, so its change needs no node."""
+    changes = [layout("monitor", "off", 0, 0), layout("monitor", "all", 0, 0)]
+    return exact_changes(context, ["--config", MONITOR, "--all-local", "--display", "none"], changes)
 
 
 @cases.case

@@ -9,6 +9,7 @@ present.
     Screens at angles are laid flat for that (passes.py tests rooms).
   - A zoomed part must be close to the native picture, and differ from it; with a DFR_equalizer it may be equal.
   - A part that frames reduce in transit, or show elsewhere, must equal the native picture after the same change.
+  - A part of the wall that another canvas shows again must equal the wall's picture at that size.
   - A picture with stereo is combined from separate runs of each eye, and compared with that.
 """
 
@@ -226,12 +227,34 @@ def check_canvases(run, path, canvases, output):
     return about, None
 
 
+def check_copies(wall, canvases, output):
+    """Compares the parts of the wall that other canvases show again, with the wall's picture at their size."""
+    about = ""
+    number = r"\[ (\S+ \S+ \S+ \S+) \]"
+    for name, source, target in re.findall(r'canvas "([^"]+)" shows part %s of canvas \S+ in part %s' % (number, number), output):
+        if name not in canvases:
+            return "", "canvas %s shows nothing" % name
+        x0, x1, y0, y1 = pixels_of(tuple(float(v) for v in source.split()), wall[0], wall[1])
+        part = [wall[2][y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)]
+        width, height, rows = canvases[name]
+        x0, x1, y0, y1 = pixels_of(tuple(float(v) for v in target.split()), width, height)
+        expected = resized(part, (x1 - x0, y1 - y0))
+        maximum = max(abs(e - s) for line, y in zip(expected, range(y1 - 1, y0 - 1, -1)) for e, s in zip(line, rows[y][3 * x0:3 * x1]))
+        if maximum > MAX_SCALED_DIFFERENCE:
+            return "", "canvas %s differs by %.2f of 255 from the wall's picture at its size" % (name, maximum)
+        about += ", canvas %s (%dx%d) differs by at most %.2f of 255 from the wall's picture at its size" % (name, width, height, maximum)
+    return about, None
+
+
 def check(run, path, native):
     """Returns None or an error, and a line about the checks."""
     shown, output = run.picture(["--config", path, "--all-local", "--projection", "program"])
-    about_canvases, wrong = check_canvases(run, path, run.canvases, output)
-    if wrong:
-        return wrong, ""
+    first_canvases = run.canvases
+    about_canvases, wrong = check_canvases(run, path, first_canvases, output)
+    about_copies, wrong_copy = check_copies(shown, first_canvases, output)
+    if wrong or wrong_copy:
+        return wrong or wrong_copy, ""
+    about_canvases += about_copies
     output = "\n".join(line for line in output.splitlines() if not of_other_canvas(line, output))
     reported = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", output)
     sent = of_frames(output)

@@ -25,8 +25,16 @@ struct WallPart {
     int firstPicture = 0; // its pictures are consecutive, in the order of pictureOf()
 };
 
+// A part of a canvas that shows a part of a canvas again, scaled: a picture on a monitor.
+struct PictureCopy {
+    int canvas = 0; // the source: 0 is the first canvas, n is SessionPlan::canvases[n - 1]
+    Viewport from;  // on the source
+    Viewport to;    // on this canvas
+};
+
 struct WallComposition {
     std::vector<WallPart> parts;
+    std::vector<PictureCopy> copies;     // over the parts
     StereoMode stereo = StereoMode::Off; // how two eyes are combined
 };
 
@@ -36,7 +44,7 @@ WallComposition compositionOf(const PassCounts& counts);
 [[nodiscard]] int picturesOf(const WallComposition& wall);
 
 // pictures: in the size of the wall, or every nth pixel of it; only the parts' areas count. An empty picture leaves its
-// part black. StereoMode::Quad stacks both eyes (stackEyes); a single eye appears twice.
+// part black. Ignores copies. StereoMode::Quad stacks both eyes (stackEyes); a single eye appears twice.
 void composeWall(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into);
 
 // The same for a session that compositionOf() describes.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "nodes/head/planning/config/explain_nodes.hpp"
 #include "nodes/head/planning/config/plan_canvas.hpp"
 #include "nodes/head/planning/unsupported_fields.hpp"
 
@@ -88,6 +90,76 @@ void addOtherCanvases(const LoadedConfig& loaded, const PlanOptions& options, co
     }
 }
 
+// Returns a canvas without nodes, in the size of the first canvas's pixels. Empty: a size is unknown.
+std::optional<CanvasPlan> emptyCanvas(const config::ResolvedConfig& config, Index canvas, Index first, int offsetX) {
+    const compound::PixelSize size = canvasSize(config, canvas), own = canvasSize(config, first);
+    if (size.w <= 0 || own.w <= 0) return {};
+    CanvasPlan plan;
+    plan.name = canvasName(config, canvas);
+    plan.nodesShowWall = false;
+    plan.shown = {static_cast<double>(size.w) / own.w, static_cast<double>(size.h) / own.h};
+    plan.size = millimetresOf(config.canvases[at(canvas)]);
+    plan.offsetX = offsetX;
+    return plan;
+}
+
+// Adds pictures of canvases that other channels show again. Canvases that show nothing else follow the others.
+class CopyAdder {
+public:
+    CopyAdder(const LoadedConfig& loaded, const PlanOptions& options, Index first, SessionPlan& plan)
+        : config_(loaded.resolved), options_(options), first_(first), plan_(plan) {}
+
+    void add(const CanvasCopy& copy) {
+        const bool isLeftOut = !options_.canvas.empty() && config_.canvases[at(copy.target)].name != options_.canvas;
+        if (isLeftOut) return; // --canvas shows another one alone
+        const std::optional<int> source = numberOf(copy.source);
+        if (!source) return warn(copy, "that canvas is not shown");
+        if (!numberOf(copy.target) && !addEmpty(copy)) return;
+        const int target = *numberOf(copy.target);
+        WallComposition& wall = target == 0 ? plan_.wall : canvas(target).wall;
+        const bool hasEyePairs = !wall.parts.empty() && wall.stereo != StereoMode::Off &&
+                                 wall.stereo != StereoMode::Anaglyph && wall.parts.front().eye != Eye::Cyclop;
+        if (hasEyePairs) return warn(copy, "it has a picture for each eye");
+        wall.copies.push_back({*source, copy.from, copy.to});
+        (target == 0 ? plan_.nodesShowWall : canvas(target).nodesShowWall) = false;
+        plan_.explain.push_back(canvasTitle(config_, copy.target) + " shows part " + bracketed(copy.from) + " of " +
+                                canvasTitle(config_, copy.source) + " in part " + bracketed(copy.to));
+    }
+
+private:
+    CanvasPlan& canvas(int number) { return plan_.canvases[static_cast<size_t>(number) - 1]; }
+
+    // Returns 0 for the first canvas, n for SessionPlan::canvases[n - 1].
+    [[nodiscard]] std::optional<int> numberOf(Index canvas) const {
+        if (canvas == first_) return 0;
+        const auto found = std::ranges::find(plan_.canvases, canvasName(config_, canvas), &CanvasPlan::name);
+        if (found == plan_.canvases.end()) return {};
+        return static_cast<int>(found - plan_.canvases.begin()) + 1;
+    }
+
+    bool addEmpty(const CanvasCopy& copy) {
+        const int width = options_.width > 0 ? options_.width : canvasSize(config_, first_).w;
+        double offset = width;
+        for (const CanvasPlan& other : plan_.canvases) offset += other.shown.x * width;
+        auto added = emptyCanvas(config_, copy.target, first_, static_cast<int>(std::lround(offset)));
+        if (added)
+            plan_.canvases.push_back(std::move(*added));
+        else
+            warn(copy, "a size is unknown; give its channels a viewport in pixels");
+        return added.has_value();
+    }
+
+    void warn(const CanvasCopy& copy, const std::string& why) {
+        plan_.warnings.push_back(canvasTitle(config_, copy.target) + " shows no picture of " +
+                                 canvasTitle(config_, copy.source) + ": " + why);
+    }
+
+    const config::ResolvedConfig& config_;
+    const PlanOptions& options_;
+    const Index first_;
+    SessionPlan& plan_;
+};
+
 } // namespace
 
 Result<SessionPlan> planOf(const LoadedConfig& loaded, const PlanOptions& options) {
@@ -96,6 +168,8 @@ Result<SessionPlan> planOf(const LoadedConfig& loaded, const PlanOptions& option
     SessionPlan plan = std::move(first->plan);
     if (first->choice.canvas != kNone) plan.canvas = canvasName(loaded.resolved, first->choice.canvas);
     addOtherCanvases(loaded, options, first->choice, plan);
+    CopyAdder copies(loaded, options, first->choice.canvas, plan);
+    for (const CanvasCopy& copy : first->copies) copies.add(copy);
     std::ranges::copy(fieldsWithoutEffect(loaded.diagnostics), std::back_inserter(plan.warnings));
     return plan;
 }

@@ -123,7 +123,8 @@ namespace {
 bool keepsPixels(const SessionPlan& plan, const NodePlan& node) {
     const RenderPass& p = node.pass;
     const bool scales = !node.transferScale.none() || node.shown || node.movesZoom || !p.zoom.none() || !p.shown.none();
-    return picturesOf(plan.wall) == 1 && plan.canvases.empty() && !scales && !mayLose(node.pictureCodec);
+    return picturesOf(plan.wall) == 1 && plan.wall.copies.empty() && plan.canvases.empty() && !scales &&
+           !mayLose(node.pictureCodec);
 }
 
 // True if `other` draws, on the machine of the node.

@@ -52,7 +52,6 @@ constexpr std::array kGaps = {
     Gap{"", "robustness", "the session always continues without lost nodes; remove it"},
     Gap{"", "NV_group", "barriers use the network, without hardware; remove it"},
     Gap{"", "NV_barrier", "barriers use the network, without hardware; remove it"},
-    Gap{"compound", "monitor_equalizer", "mural_copy_to in a segment shows its picture on another one, too"},
 };
 
 } // namespace

@@ -1,9 +1,9 @@
 #include "nodes/head/session/plan_sequence.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <cstring>
+
+#include "nodes/head/session/canvas_composition.hpp"
 
 namespace mural {
 namespace {
@@ -12,36 +12,6 @@ std::vector<int> picturesOf(const SessionPlan& plan) {
     std::vector<int> pictures;
     for (const NodePlan& node : plan.nodes) pictures.push_back(node.picture);
     return pictures;
-}
-
-PictureAssembler::Compose composeBy(const WallComposition& wall) {
-    if (picturesOf(wall) == 1) return {};
-    return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
-}
-
-// Composes a canvas that is off. The first picture has the size of the program's picture.
-PictureAssembler::Compose composeBlack(const Zoom& shown) {
-    return [shown](const std::vector<Picture>& passes, OwnedPicture& into) {
-        const auto side = [](int pixels, double scale) {
-            return std::max(1, static_cast<int>(std::lround(pixels * scale)));
-        };
-        into.resize(side(passes.front().width, shown.x), side(passes.front().height, shown.y), PictureFormat::Bgra8);
-        std::memset(into.data(), 0, into.view().sizeBytes());
-    };
-}
-
-std::vector<PictureAssembler::Compose> composeOthersBy(const SessionPlan& plan, const SessionPlan& outputs) {
-    std::vector<PictureAssembler::Compose> others;
-    for (const CanvasPlan& output : outputs.canvases) {
-        const auto canvas = std::ranges::find(plan.canvases, output.name, &CanvasPlan::name);
-        if (canvas == plan.canvases.end())
-            others.push_back(composeBlack(output.shown));
-        else
-            others.push_back([wall = canvas->wall](const std::vector<Picture>& passes, OwnedPicture& into) {
-                composeWall(wall, passes, into);
-            });
-    }
-    return others;
 }
 
 // Returns the zoom of each picture relative to the program's.
@@ -67,8 +37,7 @@ SessionStage::SessionStage(SessionConfig sessionConfig, SessionPlan sessionPlan,
       plan(std::move(sessionPlan)),
       takesPictures(headTakesPictures(config, plan)),
       ownsWallWindows(headShowsWall(config, plan)),
-      pictures(picturesOf(plan), composeBy(plan.wall), std::move(deliver), composeOthersBy(plan, outputs),
-               sizesOf(plan)),
+      pictures(picturesOf(plan), composeFirst(plan), std::move(deliver), composeOthers(plan, outputs), sizesOf(plan)),
       balancer(plan, std::move(announce), plantOf()) {}
 
 PlanSequence::PlanSequence(SessionConfig config, SessionPlan plan, Hooks hooks)

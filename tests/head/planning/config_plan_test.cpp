@@ -364,12 +364,21 @@ TEST(ConfigPlan, changesTheZoomsOfNodesBelowADfrEqualizer) {
 
 // Fields without effect are reported with position and remedy.
 TEST(ConfigPlan, reportsFieldsWithoutEffect) {
-    auto plan = planOfText("monitor_equalizer { } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" "
-                           "viewport [ .5 0 .5 1 ] outputframe { } }");
+    const auto path = ownFile("config_plan_fields.eqc");
+    std::ofstream(path)
+        << "#Equalizer 1.2 ascii\nserver { config { appNode { connection { type TCPIP } pipe { window { "
+           "viewport [ 0 0 320 200 ]\nattributes { hint_swapsync ON } channel { name \"a\" } } } }\n"
+           "layout { view { } } canvas { layout 0 wall { } segment { channel \"a\" } }\n"
+           "compound { channel ( ) } } }\n";
+    const auto loaded =
+        compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
+    forget(path);
+    auto plan = planOf(loaded, {"me", true, "", {}});
     ASSERT_TRUE(plan) << plan.error().message;
-    ASSERT_EQ(plan->warnings.size(), 1u) << plan->warnings.front();
-    EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: monitor_equalizer has no effect"), std::string::npos)
+    ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
+    EXPECT_NE(plan->warnings[0].find("config_plan_fields.eqc:2:29: connection has no effect"), std::string::npos)
         << plan->warnings[0];
+    EXPECT_NE(plan->warnings[1].find(":3:14: hint_swapsync has no effect"), std::string::npos) << plan->warnings[1];
     EXPECT_NE(plan->warnings[0].find("; "), std::string::npos) << "a remedy";
     EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ "
                            ".5 .5 ] outputframe { } }")
@@ -472,6 +481,61 @@ TEST(ConfigPlan, showsSeveralCanvases) {
     EXPECT_TRUE(named->canvases.empty()) << "one that is named is shown alone";
     EXPECT_EQ(named->nodes.size(), 1u);
     EXPECT_TRUE(named->nodes[0].pass.shown.none());
+}
+
+// A monitor shows the pictures of both channels of the wall as one. No node draws for it.
+TEST(ConfigPlan, showsTheWallOnAMonitor) {
+    const SessionPlan plan = planOfFile("monitor.eqc");
+    EXPECT_TRUE(plan.warnings.empty()) << plan.warnings.front();
+    ASSERT_EQ(plan.nodes.size(), 2u);
+    EXPECT_TRUE(plan.nodesShowWall);
+    ASSERT_EQ(plan.canvases.size(), 1u);
+    const CanvasPlan& monitor = plan.canvases[0];
+    EXPECT_EQ(monitor.name, "monitor");
+    EXPECT_EQ(monitor.shown, (Zoom{.25, .25}));
+    EXPECT_EQ(monitor.offsetX, 1920);
+    EXPECT_TRUE(monitor.wall.parts.empty());
+    ASSERT_EQ(monitor.wall.copies.size(), 1u);
+    EXPECT_EQ(monitor.wall.copies[0].canvas, 0);
+    EXPECT_TRUE(monitor.wall.copies[0].from.full() && monitor.wall.copies[0].to.full());
+    SessionConfig config;
+    config.display = Display::Windows;
+    EXPECT_TRUE(headShowsCanvas(config, monitor) && headTakesPictures(config, plan));
+    EXPECT_TRUE(showsWall(config, plan, plan.nodes[0])) << "the wall's own windows stay";
+    for (const NodePlan& n : plan.nodes) EXPECT_FALSE(setupOf(config, plan, n).deepPictures);
+
+    const auto alone = planOf(load("monitor.eqc"), {"me", true, "wall", {}});
+    ASSERT_TRUE(alone);
+    EXPECT_TRUE(alone->canvases.empty()) << "--canvas shows one alone";
+    EXPECT_TRUE(alone->warnings.empty());
+}
+
+// A channel of the wall itself can show another one, also without an equalizer: as large as its own area.
+TEST(ConfigPlan, showsAChannelOnAnotherOneOfTheSameCanvas) {
+    const auto path = ownFile("config_plan_mirror.eqc");
+    std::ofstream(path)
+        << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 300 200 ] "
+           "channel { name \"a\" } } window { viewport [ 0 0 100 200 ] channel { name \"b\" } } } }\n"
+           "layout { view { } } canvas { layout 0 wall { } segment { channel \"a\" viewport [ 0 0 .75 1 "
+           "] } segment { channel \"b\" viewport [ .75 0 .25 1 ] } }\n"
+           "compound { compound { channel ( segment 0 view 0 ) outputframe { name \"f\" viewport [ 0 0 "
+           ".5 1 ] } }\ncompound { channel ( segment 1 view 0 ) inputframe { name \"f\" } } } } }\n";
+    const auto loaded =
+        compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
+    forget(path);
+    ASSERT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
+    const auto plan = planOf(loaded, {"me", true, "", {}});
+    ASSERT_TRUE(plan) << plan.error().message;
+    ASSERT_EQ(plan->nodes.size(), 1u);
+    EXPECT_TRUE(plan->canvases.empty());
+    EXPECT_FALSE(plan->nodesShowWall) << "no node has the copy";
+    ASSERT_EQ(plan->wall.copies.size(), 1u);
+    const PictureCopy& copy = plan->wall.copies[0];
+    EXPECT_EQ(copy.canvas, 0);
+    EXPECT_NEAR(copy.from.w, .375, 1e-9);
+    EXPECT_NEAR(copy.to.x, .75, 1e-9);
+    EXPECT_NEAR(copy.to.w, .25, 1e-9);
+    EXPECT_EQ(setupOf({}, *plan, plan->nodes[0]).deepPictures, false);
 }
 
 TEST(ConfigPlan, showsQuadBufferedPairsOnTheHead) {

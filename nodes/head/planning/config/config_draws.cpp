@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "balancer/compound/frusta.hpp"
 #include "balancer/compound/plan_frame.hpp"
 
 namespace mural {
@@ -57,6 +58,7 @@ public:
     void addFrame(const compound::FrameInput& input) {
         const FramePlan frame = compound::planFrame(source_.config, input);
         const std::vector<compound::Flow> flows = compound::flowOf(source_.config, input, frame);
+        for (const compound::ShownCopy& copy : compound::copiesOf(source_.config, input, frame)) addCopy(copy, frame);
         for (const compound::PlannedBarrier& barrier : frame.barriers)
             for (const Index window : barrier.windows) found_.barriers.try_emplace(window, barrier.name);
         std::map<Index, std::vector<size_t>> workers; // draws by queue
@@ -85,6 +87,25 @@ private:
         draw.flow = flows[at(task.context)];
         found_.draws.push_back(std::move(draw));
         return true;
+    }
+
+    [[nodiscard]] Index canvasOf(Index channel) const {
+        const Index segment = source_.config.channels[at(channel)].segment;
+        return segment == kNone ? kNone : source_.config.segments[at(segment)].canvas;
+    }
+
+    void addCopy(const compound::ShownCopy& shown, const FramePlan& frame) {
+        const config::ResolvedConfig& config = source_.config;
+        const RenderContext& c = frame.contexts[at(shown.context)];
+        const config::ResolvedChannel& channel = config.channels[at(shown.channel)];
+        if (c.view == kNone || channel.view == kNone) return;
+        CanvasCopy copy;
+        copy.source = canvasOf(c.destination);
+        copy.from = compose(compose(config.views[at(c.view)].viewport, c.part), shown.from);
+        copy.target = canvasOf(shown.channel);
+        const Viewport place = compose(config.views[at(channel.view)].viewport, compound::coverage(config, channel));
+        copy.to = compose(place, shown.to);
+        if (copy.source != kNone && copy.target != kNone) found_.copies.push_back(copy);
     }
 
     const ConfigSource& source_;

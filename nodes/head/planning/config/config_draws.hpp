@@ -24,8 +24,17 @@ struct ConfigDraw {
     [[nodiscard]] const Viewport& onWall() const { return shown ? *shown : area; }
 };
 
+// A part of a canvas that a channel shows although the part belongs to other channels: a picture on a monitor.
+struct CanvasCopy {
+    compound::Index source = config::kNone; // canvas
+    Viewport from;                          // on the source
+    compound::Index target = config::kNone; // canvas
+    Viewport to;                            // on the target
+};
+
 struct ConfigDraws {
     std::vector<ConfigDraw> draws;
+    std::vector<CanvasCopy> copies;
     std::map<compound::Index, std::string> barriers; // name of the swap barrier by window
 };
 

@@ -5,12 +5,6 @@
 namespace mural {
 namespace {
 
-std::string bracketed(const Viewport& v) {
-    char text[112];
-    std::snprintf(text, sizeof text, "[ %.9g %.9g %.9g %.9g ]", v.x, v.y, v.w, v.h);
-    return text;
-}
-
 std::string scaledTransfer(const NodePlan& n) {
     if (n.transferScale.none()) return {};
     char text[64];
@@ -20,6 +14,12 @@ std::string scaledTransfer(const NodePlan& n) {
 }
 
 } // namespace
+
+std::string bracketed(const Viewport& v) {
+    char text[112];
+    std::snprintf(text, sizeof text, "[ %.9g %.9g %.9g %.9g ]", v.x, v.y, v.w, v.h);
+    return text;
+}
 
 void explainNodes(const ConfigSource& source, const std::vector<compound::Index>& channels, int nodesBefore,
                   SessionPlan& plan) {

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "balancer/config/screen.hpp"
+#include "nodes/head/planning/config/canvas_copies.hpp"
 #include "nodes/head/planning/config/explain_nodes.hpp"
 #include "nodes/head/planning/config/follow_frames.hpp"
 #include "nodes/head/planning/config/node_windows.hpp"
@@ -12,17 +13,13 @@
 
 namespace mural {
 
-namespace {
-
 // A surface without a position in the file is the default wall.
-CanvasMillimetres millimetresOf(const config::ProjectionSurface& surface) {
-    const bool isGiven = std::visit([](const auto& s) { return s.at.line > 0; }, surface);
+CanvasMillimetres millimetresOf(const config::ResolvedCanvas& canvas) {
+    const bool isGiven = std::visit([](const auto& s) { return s.at.line > 0; }, canvas.surface);
     if (!isGiven) return {};
-    const config::Screen screen = screenOf(surface);
+    const config::Screen screen = screenOf(canvas.surface);
     return {screen.width * 1000, screen.height * 1000};
 }
-
-} // namespace
 
 Result<PlannedCanvas> planCanvas(const compound::LoadedConfig& loaded, const PlanOptions& options, compound::Index only,
                                  int nodesBefore) {
@@ -32,7 +29,9 @@ Result<PlannedCanvas> planCanvas(const compound::LoadedConfig& loaded, const Pla
 
     auto input = chooseLayouts(source, options);
     if (!input) return input.error();
+    placeMonitors(source.config, *input);
     ConfigDraws gathered = gatherDraws(source, *input, plan);
+    planned.copies = joined(gathered.copies);
     std::vector<ConfigDraw>& draws = gathered.draws;
     auto choice = chooseCanvas(source, options.canvas, only, draws);
     if (!choice) return choice.error();
@@ -48,7 +47,7 @@ Result<PlannedCanvas> planCanvas(const compound::LoadedConfig& loaded, const Pla
     placeWindows({source, input->sizes, *channels, gathered.barriers, options.allLocal}, plan);
     takeObserver(source.config, draws, plan);
     if (planned.choice.canvas != config::kNone)
-        plan.size = millimetresOf(source.config.canvases[config::at(planned.choice.canvas)].surface);
+        plan.size = millimetresOf(source.config.canvases[config::at(planned.choice.canvas)]);
     explainNodes(source, *channels, nodesBefore, plan);
     plan.balance = std::make_shared<BalancePlan>(BalancePlan{
         source.config, std::move(*input), canvasSize(source.config, planned.choice.canvas), options.balance, {}});

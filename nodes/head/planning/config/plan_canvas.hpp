@@ -9,7 +9,11 @@ namespace mural {
 struct PlannedCanvas {
     SessionPlan plan;
     CanvasChoice choice;
+    std::vector<CanvasCopy> copies; // of all canvases
 };
+
+// Returns the size in the room. 0: the file has none.
+[[nodiscard]] CanvasMillimetres millimetresOf(const config::ResolvedCanvas& canvas);
 
 // only: plans this canvas alone. nodesBefore: number of nodes of other canvases, which precede its nodes.
 Result<PlannedCanvas> planCanvas(const compound::LoadedConfig& loaded, const PlanOptions& options,
