@@ -157,7 +157,7 @@ def one_canvas_of_two(context):
 
 
 @cases.case
-def a_canvas_without_nodes(context):
+def one_canvas_without_nodes(context):
     """The monitor shows pictures of the wall, so its change needs no node."""
     changes = [layout("monitor", "off", 0, 0), layout("monitor", "all", 0, 0)]
     return exact_changes(context, ["--config", MONITOR, "--all-local", "--display", "none"], changes)
