@@ -4,8 +4,11 @@
 #include <cmath>
 #include <deque>
 #include <random>
+#include <set>
 
+#include "balancer/compound/active_layouts.hpp"
 #include "balancer/compound/even_split.hpp"
+#include "balancer/compound/plan_frame.hpp"
 #include "balancer/planner/frame_planner.hpp"
 #include "balancer/simulation/exact_map_equalizer.hpp"
 
@@ -32,6 +35,28 @@ double speedOf(const ResolvedConfig& config, const std::vector<double>& speeds, 
     return speeds[at(node) % speeds.size()];
 }
 
+compound::FrameInput firstFrameOf(const ResolvedConfig& config, const Conditions& conditions) {
+    compound::FrameInput input = compound::firstFrame(config);
+    input.activeLayouts.resize(config.canvases.size(), 0);
+    for (const std::string& layout : conditions.layouts) compound::activateLayout(config, layout, input);
+    return input;
+}
+
+// Returns the contexts that draw in any frame, with the parts of the file.
+std::vector<RenderContext> drawsOf(const ResolvedConfig& config, compound::FrameInput input) {
+    constexpr uint64_t kFrames = 64; // more than any period in use
+    std::vector<RenderContext> draws;
+    for (input.frameNumber = 0; input.frameNumber < kFrames; ++input.frameNumber) {
+        const bool isPeriodic = std::ranges::any_of(config.compounds, [](const auto& c) { return c.period > 1u; });
+        if (input.frameNumber > 0 && !isPeriodic) break;
+        const compound::FramePlan plan = compound::planFrame(config, input);
+        for (const compound::ChannelPlan& channel : plan.channels)
+            for (const compound::PlannedTask& task : channel.tasks)
+                if (task.kind == config::Task::Draw) draws.push_back(plan.contexts[at(task.context)]);
+    }
+    return draws;
+}
+
 class Simulator {
 public:
     Simulator(const ResolvedConfig& config, const CostTrace& trace, const Conditions& conditions, Strategy strategy)
@@ -39,17 +64,17 @@ public:
           conditions_(conditions),
           random_(conditions.seed),
           noise_(0, std::max(conditions.noise, 1e-12)),
-          planner_(config, compound::firstFrame(config), equalizersFor(strategy, config, trace, conditions.speeds)),
+          planner_(config, firstFrameOf(config, conditions), equalizersFor(strategy, config, trace, conditions.speeds)),
           cells_(trace.columns, trace.rows),
           ranges_(trace.ranges, 1),
-          isUsed_(config.channels.size(), false),
-          times_(config.channels.size(), 0) {
-        for (const config::ResolvedCompound& c : config.compounds) {
-            if (!c.isLeaf() || c.executing == config::kNone) continue;
-            if (!isUsed_[at(c.executing)]) ++channels_;
-            isUsed_[at(c.executing)] = true;
-            ++outcome_.leaves;
+          times_(config.windows.size(), 0) {
+        std::set<Index> compounds, windows;
+        for (const RenderContext& c : drawsOf(config, planner_.input())) {
+            compounds.insert(c.compound);
+            windows.insert(windowOf(c.channel));
         }
+        outcome_.leaves = compounds.size();
+        windows_ = windows.size();
     }
 
     Outcome run() {
@@ -66,6 +91,8 @@ public:
     }
 
 private:
+    [[nodiscard]] Index windowOf(Index channel) const { return planner_.config().channels[at(channel)].window; }
+
     void setCosts(size_t frame) {
         const size_t now = frame % trace_.frames.size(),
                      before = (frame + trace_.frames.size() - 1) % trace_.frames.size();
@@ -100,9 +127,9 @@ private:
                 if (task.kind != config::Task::Draw) continue;
                 const RenderContext& c = plan.contexts[at(task.context)];
                 balance::LeafStatistics leaf = balance::leafOf(c, planner_.input().sizes);
-                const double seconds = costOf(leaf.viewport, leaf.range) * c.zoom.x * c.zoom.y /
-                                       speedOf(config, conditions_.speeds, c.channel);
-                times_[at(c.channel)] += seconds;
+                const double seconds = costOf(c.view == config::kNone ? leaf.viewport : c.part, leaf.range) * c.zoom.x *
+                                       c.zoom.y / speedOf(config, conditions_.speeds, c.channel);
+                times_[at(windowOf(c.channel))] += seconds;
                 leaf.busySeconds = seconds * std::max(.2, 1 + (conditions_.noise > 0 ? noise_(random_) : 0));
                 leaf.end = leaf.busySeconds;
                 statistics.leaves.push_back(leaf);
@@ -110,7 +137,7 @@ private:
                 isHelping[at(c.channel)] = true;
                 if (conditions_.assembly > 0) statistics.assemblies.push_back({c.destination, conditions_.assembly});
             }
-        for (const auto& assembly : statistics.assemblies) times_[at(assembly.channel)] += assembly.seconds;
+        for (const auto& assembly : statistics.assemblies) times_[at(windowOf(assembly.channel))] += assembly.seconds;
         rate();
         outcome_.travel.push_back(frame == 0 ? 0 : travelTo(statistics));
         last_ = statistics;
@@ -124,7 +151,7 @@ private:
             sum += t;
         }
         outcome_.longest.push_back(longest);
-        outcome_.efficiency.push_back(longest > 0 ? sum / (static_cast<double>(channels_) * longest) : 1);
+        outcome_.efficiency.push_back(longest > 0 ? sum / (static_cast<double>(windows_) * longest) : 1);
     }
 
     // Leaves without work have left, or not yet entered, the lists; their edges do not count.
@@ -149,9 +176,8 @@ private:
     std::normal_distribution<> noise_;
     balance::FramePlanner planner_;
     DensityGrid cells_, ranges_;
-    std::vector<bool> isUsed_;
-    std::vector<double> times_; // per channel
-    size_t channels_ = 0;       // channels that may draw
+    std::vector<double> times_; // per window
+    size_t windows_ = 0;        // windows that may draw
     std::deque<FrameStatistics> pending_;
     FrameStatistics last_;
     Outcome outcome_;
@@ -217,9 +243,11 @@ const char* nameOf(Strategy strategy) {
 std::string problemOf(const ResolvedConfig& config, const CostTrace& trace, const Conditions& conditions) {
     if (trace.frames.empty()) return "the trace has no frames";
     if (conditions.latency < 1) return "the latency must be 1 or more";
-    bool hasLeaf = false;
-    for (const config::ResolvedCompound& c : config.compounds) hasLeaf |= c.isLeaf() && c.executing != config::kNone;
-    return hasLeaf ? "" : "no compound draws";
+    compound::FrameInput input = compound::firstFrame(config);
+    for (const std::string& layout : conditions.layouts)
+        if (!compound::activateLayout(config, layout, input))
+            return "no canvas has a layout " + layout + "; mural config print shows the layouts";
+    return drawsOf(config, firstFrameOf(config, conditions)).empty() ? "no compound draws in this layout" : "";
 }
 
 Outcome simulate(const ResolvedConfig& config, const CostTrace& trace, const Conditions& conditions,

@@ -6,6 +6,7 @@
 
 #include "balancer/simulation/measures.hpp"
 #include "balancer/simulation/scenes.hpp"
+#include "tests/balancer/text_config.hpp"
 
 namespace mural::simulation {
 namespace {
@@ -99,6 +100,37 @@ TEST(Simulator, isDeterministic) {
     EXPECT_EQ(once.efficiency, simulate(loaded.resolved, trace, c, Strategy::CostMap).efficiency);
     c.seed = 2;
     EXPECT_NE(once.efficiency, simulate(loaded.resolved, trace, c, Strategy::CostMap).efficiency);
+}
+
+// The left window shows the dear half of the view in one layout. The other layout divides that half among both windows.
+TEST(Simulator, takesCostsFromTheViewAndCountsWindows) {
+    const auto loaded = balance::testing::configOf(R"(
+        appNode { pipe { window { viewport [ 0 0 100 100 ] channel { name "left" } }
+                         window { viewport [ 0 0 100 100 ] channel { name "right" } } } }
+        layout { name "apart" view { } } layout { name "shared" view { } }
+        canvas { layout "apart" layout "shared" wall { } segment { channel "left" viewport [ 0 0 .5 1 ] }
+                 segment { channel "right" viewport [ .5 0 .5 1 ] } }
+        compound { channel ( layout "apart" segment 0 view 0 ) }
+        compound { channel ( layout "apart" segment 1 view 0 ) }
+        compound { channel ( layout "shared" segment 0 view 0 ) compound { viewport [ 0 0 1 .5 ] }
+                   compound { channel "right" viewport [ 0 .5 1 .5 ] outputframe { name "r" } }
+                   inputframe { name "r" } })");
+    ASSERT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
+    CostTrace trace;
+    trace.columns = 2;
+    trace.rows = 1;
+    trace.frames.push_back({{3, 1}, {1}});
+    Conditions c;
+    c.frames = 2;
+    c.noise = 0;
+    EXPECT_NEAR(simulate(loaded.resolved, trace, c, Strategy::Even).efficiency[0], 4. / (2 * 3), 1e-9);
+    c.layouts = {"shared"};
+    ASSERT_EQ(problemOf(loaded.resolved, trace, c), "");
+    EXPECT_NEAR(simulate(loaded.resolved, trace, c, Strategy::Even).efficiency[0], 4. / (2 * 2.5), 1e-9)
+        << "the right window draws its own half, too";
+    c.layouts = {"none"};
+    EXPECT_EQ(problemOf(loaded.resolved, trace, c),
+              "no canvas has a layout none; mural config print shows the layouts");
 }
 
 TEST(CostTrace, isReadAsWritten) {

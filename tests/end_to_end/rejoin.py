@@ -148,6 +148,12 @@ def areas_that_are_balanced(context):
             kill_and_compare(context, tiles="balance load", missing_columns=range(WIDTH), victims=(0, 1) if length.LONG else (0,), maximum=24))
 
 
+@case
+def areas_of_ranges(context):
+    """The nodes of an area composite their ranges. All of them leave the area when one is lost."""
+    return kill_and_compare(context, tiles="config db-of-areas.eqc", missing_columns=range(WIDTH), victims=(3, 0) if length.LONG else (3,), maximum=24)
+
+
 @cases.long_case
 def areas_at_random(context):
     """Areas that change with every frame: a returning node must have the current frame's."""

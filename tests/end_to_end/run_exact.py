@@ -20,6 +20,8 @@ import time
 
 from harness import display, length, pictures, programs, shared_nodes
 
+CONFIGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "configs")
+
 
 def parse_arguments(description, add_arguments):
     parser = argparse.ArgumentParser(description=description,
@@ -30,6 +32,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--long-programs", help="further programs of a long run, MURAL_LONG_TESTS=1")
     parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
     parser.add_argument("--long-layouts", help="layouts of a long run, MURAL_LONG_TESTS=1; default those of --layouts")
+    parser.add_argument("--config", metavar="FILE", help="nodes of this file in configs/; no layouts then")
     parser.add_argument("--tile-queue", metavar="WxH", help="nodes take tiles of this size from a queue; layouts are numbers of nodes then")
     parser.add_argument("--min-changes", type=int, default=0, metavar="N", help="fail when areas or shares changed less often, in all runs together: then nothing was tried")
     parser.add_argument("--size", default="1000x777", help="of the programs' windows")
@@ -51,6 +54,8 @@ def parse_arguments(description, add_arguments):
         arguments.layouts = arguments.long_layouts
     if length.LONG and arguments.long_programs:
         arguments.programs += "," + arguments.long_programs
+    if arguments.config:
+        arguments.layouts = "file"
     return arguments
 
 
@@ -96,6 +101,8 @@ class Comparison:
         mural = arguments.mural or os.path.join(arguments.build, "bin", "mural")
         options = arguments.options.split()
         def divided(layout):
+            if arguments.config:
+                return ["--config", os.path.join(CONFIGS, arguments.config), "--all-local"]
             return ["--tile-queue", arguments.tile_queue, "--local-nodes", layout] if arguments.tile_queue else ["--tiles", layout]
         return {layout: [mural, "run"] + divided(layout) + ["--report", self.report_file(layout)] + options + ["--"]
                 for layout in arguments.layouts.split(",")}

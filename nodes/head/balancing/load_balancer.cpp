@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "balancer/equalizers/make_equalizers.hpp"
 #include "balancer/equalizers/random_equalizer.hpp"
@@ -247,15 +248,17 @@ void LoadBalancer::findParts(ViewportAssignment& areas, RangeAssignment& ranges)
         if (!node.task) continue;
         if (node.movesZoom)
             areas.zooms[i] = stepOf(zoomChangeOf(planner_->config(), planner_->input().compounds, node.task->compound));
-        if (!node.movesArea && !node.movesRange) continue;
-        const RenderContext* c = found[key(node.task->compound, node.task->eye)];
-        const bool draws = c != nullptr && c->view != kNone && !c->part.empty() && !c->range.empty();
         if (node.movesArea) {
+            const DrawTask& task = *planOf(node.collector).task;
+            const RenderContext* c = found[key(task.compound, task.eye)];
+            const bool draws = c != nullptr && c->view != kNone && !c->part.empty() && !c->range.empty();
             areas.ofNodes[i] =
                 draws ? compose(planner_->config().views[at(c->view)].viewport, c->part) : Viewport{0, 0, 0, 0};
             snap(areas.ofNodes[i]);
         }
         if (node.movesRange) {
+            const RenderContext* c = found[key(node.task->compound, node.task->eye)];
+            const bool draws = c != nullptr && c->view != kNone && !c->part.empty() && !c->range.empty();
             const double end = node.pass.share.start;
             ranges.ofNodes[i] = draws ? Range{c->range.start, std::min(1., c->range.end)} : Range{end, end};
         }
@@ -333,6 +336,13 @@ std::vector<double> LoadBalancer::busyByCompound(const FrameTimes::Frame& frame)
         if (nodes_[i].movesRange && (frame.done[i].flags & wire::kNotSplit)) continue;
         double& sum = busy[at(nodes_[i].task->compound)];
         sum = std::max(0., sum) + frame.busyNs[i];
+    }
+    // An equalizer of areas that has only the collectors divides the time of the slowest node of each.
+    for (const NodePlan& node : nodes_) {
+        if (!node.task || !node.movesArea || node.movesRange || node.collector == node.node) continue;
+        const double own = busy[at(node.task->compound)];
+        double& first = busy[at(planOf(node.collector).task->compound)];
+        if (first >= 0) first = std::max(first, own);
     }
     return busy;
 }
@@ -419,14 +429,21 @@ void LoadBalancer::windowGone(uint32_t client, uint32_t window) {
         });
 }
 
-// The nodes of both eyes draw one part, so both must live.
+// The nodes of both eyes draw one part, and the nodes of one moving area composite it, so all of them must live.
 void LoadBalancer::setAvailable(int node, bool isAvailable) {
     if (!planOf(node).task) return;
-    const Index compound = planOf(node).task->compound;
-    for (size_t i = 0; i < nodes_.size(); ++i)
-        if (nodes_[i].task && nodes_[i].task->compound == compound)
-            isAvailable = isAvailable && times_.isAlive(static_cast<int>(i)) && !givenUp_.contains(static_cast<int>(i));
-    planner_->changeInput().compounds[at(compound)].isAvailable = isAvailable;
+    const auto sharesPart = [&](const NodePlan& a, const NodePlan& b) {
+        return a.task && b.task &&
+               (a.task->compound == b.task->compound || (a.movesArea && a.collector == b.collector));
+    };
+    std::set<Index> compounds;
+    for (const NodePlan& other : nodes_)
+        for (const NodePlan& of : nodes_)
+            if (sharesPart(planOf(node), of) && sharesPart(of, other)) {
+                isAvailable = isAvailable && times_.isAlive(other.node) && !givenUp_.contains(other.node);
+                compounds.insert(other.task->compound);
+            }
+    for (const Index compound : compounds) planner_->changeInput().compounds[at(compound)].isAvailable = isAvailable;
 }
 
 void LoadBalancer::nodeLost(int node) {

@@ -31,11 +31,36 @@ std::string whyAreasAreFixed(const SessionPlan& plan, const SessionConfig& confi
     for (const int n : nodes) {
         const NodePlan& node = plan.nodes[static_cast<size_t>(n)];
         if (showsWall(config, plan, node)) return "nodes show their tiles in their own windows (--display windows)";
-        if (node.pass.ranges > 1) return "its nodes draw ranges (--db)";
         if (node.pass.period > 1) return "its nodes draw whole frames in turn (--dplex)";
         if (!drawsUnscaled(node)) return "its nodes draw kernels, or zoomed or cropped parts";
     }
     return {};
+}
+
+// The nodes of one collector composite their ranges, so they have one area: that of the collector. How an equalizer
+// affects them:
+enum class AreaRole {
+    Leads,   // it has the collectors of its nodes
+    Follows, // it has none of them: the collectors' equalizer counts
+    Mixed
+};
+
+AreaRole roleOf(const SessionPlan& plan, const std::vector<int>& nodes) {
+    const auto hasCollector = [&](int n) {
+        return std::ranges::find(nodes, plan.nodes[static_cast<size_t>(n)].collector) != nodes.end();
+    };
+    if (std::ranges::all_of(nodes, hasCollector)) return AreaRole::Leads;
+    return std::ranges::none_of(nodes, hasCollector) ? AreaRole::Follows : AreaRole::Mixed;
+}
+
+// Returns the nodes and those that composite with them.
+std::vector<int> withGroups(const SessionPlan& plan, const std::vector<int>& nodes) {
+    std::vector<int> all;
+    for (const NodePlan& node : plan.nodes)
+        if (std::ranges::find(nodes, node.collector) != nodes.end() ||
+            std::ranges::find(nodes, node.node) != nodes.end())
+            all.push_back(node.node);
+    return all;
 }
 
 std::string whyRangesAreFixed(const SessionPlan& plan, const std::vector<int>& nodes) {
@@ -68,6 +93,17 @@ std::string listOf(const std::vector<int>& nodes) {
     return list;
 }
 
+void settleUsage(SessionPlan& plan, const balance::Equalizer& e, bool isDivided, BalancePlan& into) {
+    const std::string name = "equalizer \"" + e.id() + "\"";
+    if (!isDivided) {
+        plan.explain.push_back(name + " has no effect: no equalizer below it moves work between nodes");
+        return;
+    }
+    into.equalizers.push_back(e.id());
+    plan.explain.push_back(name + " (" + e.kind() +
+                           ") lends nodes of cheap parts of the wall to expensive ones, through the equalizers below");
+}
+
 // Equalizers of usage act through equalizers of areas and ranges below them.
 bool dividesBelow(const BalancePlan& balance, const std::vector<std::unique_ptr<balance::Equalizer>>& all, Index root) {
     return std::ranges::any_of(all, [&](const auto& e) {
@@ -85,17 +121,27 @@ void settleDivision(SessionPlan& plan, const SessionConfig& config, const balanc
                                " of this session draws its part");
         return;
     }
-    const std::string why = ranges ? whyRangesAreFixed(plan, nodes) : whyAreasAreFixed(plan, config, nodes);
+    const AreaRole role = ranges ? AreaRole::Leads : roleOf(plan, nodes);
+    if (role == AreaRole::Follows) {
+        plan.explain.push_back(name + " (" + e.kind() +
+                               ") has no parts of its own: nodes that composite one picture have the areas of its "
+                               "first range");
+        return;
+    }
+    const std::vector<int> moved = ranges ? nodes : withGroups(plan, nodes);
+    const std::string why = ranges                    ? whyRangesAreFixed(plan, nodes)
+                            : role == AreaRole::Mixed ? "it divides some first ranges of pictures and not all"
+                                                      : whyAreasAreFixed(plan, config, moved);
     if (!why.empty()) {
         plan.warnings.push_back(name + ": " + (ranges ? "ranges" : "areas") + " stay fixed: " + why);
         return;
     }
-    for (const int node : nodes)
+    for (const int node : moved)
         (ranges ? plan.nodes[static_cast<size_t>(node)].movesRange : plan.nodes[static_cast<size_t>(node)].movesArea) =
             true;
     into.equalizers.push_back(e.id());
     plan.explain.push_back(name + " (" + e.kind() + ") divides the " + (ranges ? "draws" : "picture") +
-                           " among nodes " + listOf(nodes) + " by their times for the last frames");
+                           " among nodes " + listOf(moved) + " by their times for the last frames");
 }
 
 void settlePace(SessionPlan& plan, const balance::Equalizer& e, BalancePlan& into) {
@@ -152,9 +198,11 @@ void settleBalance(SessionPlan& plan, const SessionConfig& config) {
             settlePace(plan, *e, *settled);
         else if (e->effect() == Effect::Zooms)
             settleZoom(plan, *e, *settled);
+        else if (e->effect() == Effect::Inputs) // places are fixed: placeMonitors()
+            plan.explain.push_back("equalizer \"" + e->id() + "\" (" + e->kind() +
+                                   ") places pictures of other channels by their parts of the view");
     for (const auto& e : all)
-        if (e->effect() == Effect::Usage && dividesBelow(*settled, all, e->compound()))
-            settled->equalizers.push_back(e->id());
+        if (e->effect() == Effect::Usage) settleUsage(plan, *e, dividesBelow(*settled, all, e->compound()), *settled);
     plan.balance = std::move(settled);
 }
 

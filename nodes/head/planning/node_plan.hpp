@@ -75,7 +75,7 @@ struct NodePlan {
     Zoom transferScale; // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
     std::optional<DrawTask> task;  // empty: a node of options without equalizers
     bool isPlacedByFrames = false; // frames of the file crop, move or scale its picture
-    // equalizers change its area, range or zoom; set by settleBalance()
+    // equalizers change its area, range or zoom; set by settleBalance(). Nodes of one collector have one area.
     bool movesArea = false, movesRange = false, movesZoom = false;
     std::optional<ScreenView> screen; // for a screen in a room
     std::optional<NodeWindow> window; // replaces the windows of tiles

@@ -10,6 +10,8 @@ import time
 
 from harness import cases, length, pictures, programs, session
 
+CONFIGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "configs")
+
 WIDTH, HEIGHT = 252, 190
 BACK = "rejoined "
 # Pause in each frame. A rejoin takes the same time with longer ones, and there are fewer pictures to save and compare.
@@ -109,7 +111,9 @@ class Watch:
 
 
 def divided(tiles):
-    """2x1 tiles, or two nodes whose areas move: "queue 32x32", "balance auto"."""
+    """2x1 tiles, or nodes whose areas move: "queue 32x32", "balance auto", "config FILE" of configs/."""
+    if tiles.startswith("config"):
+        return ["--config", os.path.join(CONFIGS, tiles.split()[1]), "--all-local", "--projection", "program", "--size", "%dx%d" % (WIDTH, HEIGHT)]
     if tiles.startswith("balance"):
         return ["--balance", tiles.split()[1], "--local-nodes", "2"]
     return ["--tile-queue", tiles.split()[1], "--local-nodes", "2"] if tiles.startswith("queue") else ["--tiles", tiles]
@@ -174,7 +178,7 @@ def kill_and_compare(context, frames=MAX_FRAMES, options=(), environment=None, v
         if isinstance(differing, str):
             return differing
         wrong = judged(differing, spans, max(EXACT, 3 * every), every)
-        if wrong is None and every == 1 and not any(differing) and not tiles.startswith(("queue", "balance")):
+        if wrong is None and every == 1 and not any(differing) and not tiles.startswith(("queue", "balance", "config")):
             wrong = "no picture was incomplete; check that a process was killed"
         if wrong is None and maximum is not None and sum(map(bool, differing)) > maximum:
             wrong = "%d frames lack something, not %d at most" % (sum(map(bool, differing)), maximum)

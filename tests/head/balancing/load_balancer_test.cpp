@@ -473,6 +473,51 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SplitTest,
                                                                            : "Tree";
                          });
 
+// Two areas of two ranges each: nodes 0 and 1 composite one, nodes 2 and 3 the other.
+class GroupTest : public BalancerTest {
+protected:
+    void SetUp() override {
+        SessionConfig config;
+        config.configFile = std::string(MURAL_SOURCE_DIR) + "/configs/db-of-areas.eqc";
+        config.allLocal = true;
+        begin(config);
+        ASSERT_EQ(plan_.nodes.size(), 4u);
+        ASSERT_EQ(plan_.nodes[3].collector, 2);
+    }
+    void expectEqualAreas() const {
+        EXPECT_EQ(areaOf(0), areaOf(1));
+        EXPECT_EQ(areaOf(2), areaOf(3));
+        EXPECT_EQ(pixelsOf(0) + pixelsOf(2), int64_t{kWidth} * kHeight);
+    }
+    // The second range costs `more` times as much as the first.
+    void drawRanges(double more) {
+        drawAreas([](double x, double) { return x < .25 ? 5 : 1; }, {}, {1, 1 / more, 1, 1 / more});
+    }
+};
+
+TEST_F(GroupTest, dividesTheTimeOfTheSlowestRange) {
+    for (int i = 0; i < 60; ++i) {
+        drawRanges(3);
+        if (!areas_.empty()) expectEqualAreas();
+    }
+    EXPECT_NEAR(static_cast<double>(pixelsOf(0)) / (kWidth * kHeight), .2, .05) << "both areas have half of the cost";
+    EXPECT_GT(pixelsOf(2), pixelsOf(0));
+}
+
+TEST_F(GroupTest, leavesTheAreaOfALostNode) {
+    for (int i = 0; i < 10; ++i) drawRanges(1);
+    alive_[3] = false;
+    balancer_->nodeLost(3);
+    EXPECT_TRUE(areaOf(2).empty() && areaOf(3).empty()) << "the other node of the area lacks its range";
+    expectEqualAreas();
+    for (int i = 0; i < 10; ++i) drawRanges(1);
+    alive_[3] = true;
+    balancer_->nodeJoined(3);
+    for (int i = 0; i < 40; ++i) drawRanges(1);
+    EXPECT_FALSE(areaOf(2).empty());
+    expectEqualAreas();
+}
+
 TEST_F(BalancerTest, doesNothingWithoutEqualizers) {
     SessionConfig config;
     config.columns = 2;

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "balancer/config/presets.hpp"
+#include "balancer/equalizers/make_equalizers.hpp"
 #include "compositor/strategies/choose_strategy.hpp"
 #include "nodes/head/planning/composition_choice.hpp"
 #include "tests/balancer/example_files.hpp"
@@ -326,6 +327,38 @@ TEST(ConfigPlan, reportsUnsupportedZooms) {
         "compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] zoom [ .5 .5 ] outputframe { } }");
     ASSERT_FALSE(ranges);
     EXPECT_NE(ranges.error().message.find("the same zoom"), std::string::npos) << ranges.error().message;
+}
+
+// Nodes that composite one area keep it equal: the equalizer of the first range moves it.
+TEST(ConfigPlan, movesTheAreasOfRangesTogether) {
+    const auto settled = [](SessionPlan plan) {
+        settleBalance(plan, {});
+        return plan;
+    };
+    const SessionPlan plan = settled(planOfFile("db-of-areas.eqc"));
+    EXPECT_TRUE(plan.warnings.empty()) << plan.warnings.front();
+    ASSERT_EQ(plan.nodes.size(), 4u);
+    for (const NodePlan& n : plan.nodes) {
+        EXPECT_TRUE(n.movesArea && !n.movesRange);
+        EXPECT_EQ(n.pass.ranges, 2);
+        EXPECT_EQ(n.area, plan.nodes[static_cast<size_t>(n.collector)].area);
+    }
+    ASSERT_EQ(plan.balance->equalizers.size(), 1u);
+    const auto all = balance::makeEqualizers(plan.balance->config, plan.balance->choice);
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(plan.balance->equalizers[0], all[0]->id());
+
+    // one equalizer above the ranges has all nodes of each area
+    auto above =
+        planOfText("load_equalizer { } compound { compound { range [ 0 .5 ] } compound { range [ .5 1 ] channel "
+                   "\"b\" outputframe { name \"x\" } } inputframe { name \"x\" } } compound { channel \"b\" "
+                   "compound { range [ 0 .5 ] } compound { range [ .5 1 ] channel \"a\" outputframe { name "
+                   "\"y\" } } inputframe { name \"y\" } outputframe { } }");
+    ASSERT_TRUE(above) << above.error().message;
+    const SessionPlan whole = settled(*above);
+    EXPECT_TRUE(whole.warnings.empty()) << whole.warnings.front();
+    ASSERT_EQ(whole.nodes.size(), 4u);
+    for (const NodePlan& n : whole.nodes) EXPECT_TRUE(n.movesArea);
 }
 
 TEST(ConfigPlan, changesTheZoomsOfNodesBelowADfrEqualizer) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fstream>
 
+#include "balancer/compound/active_layouts.hpp"
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/load_config.hpp"
 #include "balancer/compound/plan_frame.hpp"
@@ -60,27 +61,10 @@ int check(const LoadedConfig& loaded) {
     return loaded.ok() ? 0 : launch::kExitUsage;
 }
 
-// Activates the layout on every canvas that has it. Returns false if none has.
-bool showLayout(const config::ResolvedConfig& c, const std::string& name, compound::FrameInput& input) {
-    bool found = false;
-    input.activeLayouts.assign(c.canvases.size(), 0);
-    for (size_t canvas = 0; canvas < c.canvases.size(); ++canvas) {
-        for (size_t l = 0; l < c.canvases[canvas].layouts.size(); ++l) {
-            const compound::Index layout = c.canvases[canvas].layouts[l];
-            if (layout == compound::kNone ||
-                (c.layouts[config::ResolvedConfig::at(layout)].name != name && std::to_string(layout) != name))
-                continue;
-            input.activeLayouts[canvas] = static_cast<compound::Index>(l);
-            found = true;
-        }
-    }
-    return found;
-}
-
 Result<std::string> resolvedText(const LoadedConfig& loaded, const ConfigArguments& a) {
     compound::FrameInput input = compound::firstFrame(loaded.resolved);
     input.frameNumber = static_cast<uint64_t>(std::max<int64_t>(a.frame, 0));
-    if (!a.layout.empty() && !showLayout(loaded.resolved, a.layout, input)) {
+    if (!a.layout.empty() && !compound::activateLayout(loaded.resolved, a.layout, input)) {
         return Error{"no canvas has a layout " + a.layout +
                      "; choose a name that mural config draw shows, or its number"};
     }

@@ -69,6 +69,7 @@ Conditions conditionsOf(const SimulateArguments& a, uint32_t seed) {
     c.overlap = a.overlap;
     c.assembly = a.assembly;
     c.frames = static_cast<size_t>(a.frames);
+    c.layouts = a.layouts;
     c.seed = seed;
     return c;
 }
@@ -170,6 +171,7 @@ Result<void> plot(const SimulateArguments& a, const std::vector<Row>& rows) {
 
 Result<compound::LoadedConfig> configOf(const SimulateArguments& a) {
     if (a.config.empty()) {
+        if (!a.layouts.empty()) return Error{"--layout needs a configuration"};
         const auto mode = a.mode == "db" ? config::SplitMode::Db : config::SplitMode::TwoD;
         return simulation::dividedConfig(static_cast<size_t>(a.nodes), mode);
     }
@@ -201,6 +203,8 @@ const char* const kSimulateFooter =
 void describeSimulate(CLI::App& command, SimulateArguments& a) {
     command.add_option("CONFIG", a.config, "configuration (.eqc); default: one picture divided among --nodes nodes");
     command.add_option("--cost", a.cost, "cost trace: a file, a scene of --list, or all scenes")->type_name("TRACE");
+    command.add_option("--layout", a.layouts, "with CONFIG: the layout to show, by name or number; repeatable")
+        ->type_name("NAME");
     command.add_option("--nodes", a.nodes, "without CONFIG: nodes that share the picture (8)")
         ->type_name("N")
         ->check(CLI::Range(2, 1024));

@@ -12,6 +12,7 @@ namespace mural::cli {
 struct SimulateArguments {
     std::string config; // empty: a generated one
     std::string cost;   // a file, or the name of a scene
+    std::vector<std::string> layouts;
     int nodes = 8;
     std::string mode = "2d";
     int latency = 1;

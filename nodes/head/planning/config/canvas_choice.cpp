@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "balancer/compound/active_layouts.hpp"
 #include "balancer/compound/even_split.hpp"
 
 namespace mural {
@@ -18,30 +19,6 @@ Index canvasOf(const config::ResolvedConfig& config, const ConfigDraw& draw) {
     return segment == kNone ? kNone : config.segments[at(segment)].canvas;
 }
 
-constexpr const char* kOff = "off";
-
-// Activates the layout on every canvas that has it. wanted: the layout's name, or "CANVAS:LAYOUT" for one canvas. The
-// layout "off" turns a canvas off. Returns false if no canvas has it.
-bool activateLayout(const config::ResolvedConfig& config, const std::string& wanted, compound::FrameInput& input) {
-    bool found = false;
-    for (size_t c = 0; c < config.canvases.size(); ++c) {
-        const std::string prefix = config.canvases[c].name + ":";
-        const bool isOwn = !config.canvases[c].name.empty() && wanted.starts_with(prefix);
-        const std::string name = isOwn ? wanted.substr(prefix.size()) : wanted;
-        const auto& layouts = config.canvases[c].layouts;
-        if (isOwn && name == kOff) {
-            input.activeLayouts[c] = kNone;
-            found = true;
-        }
-        for (size_t i = 0; i < layouts.size(); ++i) {
-            if (layouts[i] == kNone || config.layouts[at(layouts[i])].name != name) continue;
-            input.activeLayouts[c] = static_cast<Index>(i);
-            found = true;
-        }
-    }
-    return found;
-}
-
 } // namespace
 
 Result<compound::FrameInput> chooseLayouts(const ConfigSource& source, const PlanOptions& options) {
@@ -50,7 +27,7 @@ Result<compound::FrameInput> chooseLayouts(const ConfigSource& source, const Pla
     input.views.resize(source.config.views.size());
     for (compound::ViewState& view : input.views) view.modelUnit = options.modelUnit;
     for (const std::string& wanted : options.layouts)
-        if (!activateLayout(source.config, wanted, input))
+        if (!compound::activateLayout(source.config, wanted, input))
             return Error{"--layout \"" + wanted + "\": no canvas of " + source.file +
                          " has this layout; mural config print shows the layouts"};
     return input;
