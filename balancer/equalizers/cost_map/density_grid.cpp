@@ -77,14 +77,21 @@ void DensityGrid::scale(const Viewport& part, double factor) {
     const auto w = static_cast<double>(columns_), h = static_cast<double>(rows_);
     const double x0 = std::max(0., part.x * w), x1 = std::min(w, (part.x + part.w) * w);
     const double y0 = std::max(0., part.y * h), y1 = std::min(h, (part.y + part.h) * h);
+    if (!(x1 > x0) || !(y1 > y0)) return;
+    // Only the first and the last column can be within the part in part.
+    const auto first = static_cast<size_t>(x0), last = static_cast<size_t>(std::ceil(x1)) - 1;
+    const auto insideOf = [&](size_t column) {
+        const auto x = static_cast<double>(column);
+        return std::min(x1, x + 1) - std::max(x0, x);
+    };
+    const double inFirst = insideOf(first), inLast = insideOf(last);
     for (auto row = static_cast<size_t>(y0); static_cast<double>(row) < y1; ++row) {
         const auto y = static_cast<double>(row);
-        const double inY = std::min(y1, y + 1) - std::max(y0, y);
+        const double change = (factor - 1) * (std::min(y1, y + 1) - std::max(y0, y));
         double* cells = cells_.data() + row * columns_;
-        for (auto column = static_cast<size_t>(x0); static_cast<double>(column) < x1; ++column) {
-            const auto x = static_cast<double>(column);
-            cells[column] *= 1 + (factor - 1) * inY * (std::min(x1, x + 1) - std::max(x0, x));
-        }
+        cells[first] *= 1 + change * inFirst;
+        for (size_t column = first + 1; column < last; ++column) cells[column] *= 1 + change;
+        if (last > first) cells[last] *= 1 + change * inLast;
     }
 }
 
@@ -117,8 +124,13 @@ void DensityGrid::smooth(const Viewport& part, double weight) {
 }
 
 void DensityGrid::raise(double fraction) {
-    double all = 0;
-    for (const double cell : cells_) all += cell;
+    // Four sums, because each addition waits for the one before.
+    double sums[4] = {};
+    const size_t quads = cells_.size() / 4 * 4;
+    for (size_t i = 0; i < quads; i += 4)
+        for (size_t k = 0; k < 4; ++k) sums[k] += cells_[i + k];
+    double all = sums[0] + sums[1] + sums[2] + sums[3];
+    for (size_t i = quads; i < cells_.size(); ++i) all += cells_[i];
     const double least = all * fraction / static_cast<double>(cells_.size());
     for (double& cell : cells_) cell = std::max(cell, least);
 }
