@@ -45,11 +45,14 @@ void BlobIntake::startRequests(int64_t nowNs) {
 
 void BlobIntake::ask(const BlobName& name, Request& request, int64_t nowNs) {
     const uint64_t from = request.assembly.receivedBytes();
-    const uint64_t end = std::min(request.assembly.sizeBytes(), from + kWindowBytes);
+    const uint64_t window = rate_.bytesPerSecond() == 0 ? kFirstWindowBytes : kWindowBytes;
+    const uint64_t end = std::min(request.assembly.sizeBytes(), from + window);
     request.askedBytes = end;
     request.progressNs = nowNs;
     const bool takesPlace = request.takesPlace && from == 0;
-    sender_.toOne(kWriter, WantBlobMessage{name, from, static_cast<uint32_t>(end - from), takesPlace});
+    rate_.requested(nowNs);
+    sender_.toOne(kWriter,
+                  WantBlobMessage{name, from, static_cast<uint32_t>(end - from), takesPlace, rate_.bytesPerSecond()});
 }
 
 Result<void> BlobIntake::input(const BlobBeginMessage& message) {
@@ -64,8 +67,12 @@ Result<void> BlobIntake::input(const BlobBeginMessage& message) {
 }
 
 Result<void> BlobIntake::input(const BlobDataMessage& message, int64_t nowNs) {
+    const bool isCoded = message.coding != PieceCoding::Raw;
+    const auto raw =
+        decodePiece(message.coding, message.bytes, isCoded ? message.rawBytes : message.bytes.size(), decoded_);
+    if (!raw) return Error{"blob " + textOf(message.name) + ": a coded piece is damaged; it is requested again"};
     const auto push = std::ranges::find_if(pushes_, [&](const auto& item) { return item.first == message.name; });
-    if (push != pushes_.end() && push->second.add(message.offset, message.bytes) && push->second.isComplete()) {
+    if (push != pushes_.end() && push->second.add(message.offset, *raw) && push->second.isComplete()) {
         BlobAssembly assembly = std::move(push->second);
         pushes_.erase(push);
         const Result<Blob> blob = assembly.finish();
@@ -77,7 +84,8 @@ Result<void> BlobIntake::input(const BlobDataMessage& message, int64_t nowNs) {
     const auto found = requests_.find(message.name);
     if (found == requests_.end()) return {};
     Request& request = found->second;
-    if (!request.assembly.add(message.offset, message.bytes)) return {}; // a gap; asked for again later
+    rate_.received(message.bytes.size(), message.codingMicroseconds * int64_t{1000}, nowNs);
+    if (!request.assembly.add(message.offset, *raw)) return {}; // a gap; asked for again later
     request.progressNs = nowNs;
     if (!request.assembly.isComplete()) {
         if (request.assembly.receivedBytes() >= request.askedBytes) ask(message.name, request, nowNs);
@@ -101,7 +109,7 @@ void BlobIntake::writePushed(BlobTransfer transfer, const MessageFunction& emit)
     for (const Blob& blob : pushed_) sendBlob(blob, transfer, emit);
     for (const auto& [name, assembly] : pushes_) {
         emit(encode(BlobBeginMessage{{name, assembly.sizeBytes()}}).bytes());
-        emit(encode(BlobDataMessage{name, 0, assembly.received()}).bytes());
+        emit(encode(BlobDataMessage{name, 0, PieceCoding::Raw, 0, 0, assembly.received()}).bytes());
     }
 }
 
@@ -147,6 +155,7 @@ Blob BlobIntake::arrived(const Blob& blob) {
 
 void BlobIntake::tick(int64_t nowNs) {
     std::erase_if(requests_, [](const auto& item) { return item.second.entry.expired(); });
+    if (requests_.empty()) rate_.idle();
     for (auto& [name, request] : requests_)
         if (nowNs - request.progressNs >= kRetryNs) ask(name, request, nowNs);
     startRequests(nowNs);

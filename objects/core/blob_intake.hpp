@@ -8,6 +8,7 @@
 #include "objects/blob/blob_assembly.hpp"
 #include "objects/blob/blob_store.hpp"
 #include "objects/core/catalogue_writer.hpp"
+#include "objects/core/link_rate.hpp"
 #include "objects/core/message_sink.hpp"
 #include "objects/core/object_state.hpp"
 
@@ -31,7 +32,8 @@ public:
         : sender_(sink), options_(options), store_(options.storeBytes) {}
 
     static constexpr uint32_t kWindowBytes = 2U << 20;
-    static constexpr size_t kMaxRequests = 4; // at the same time
+    static constexpr uint32_t kFirstWindowBytes = kBlobPieceBytes; // raw, until the rate of the connection is known
+    static constexpr size_t kMaxRequests = 4;                      // at the same time
     static constexpr int64_t kRetryNs = 1'000'000'000;
 
     // Returns the entry for a reference. All states share it. If the blob is not here, request() it or wait for it.
@@ -39,6 +41,7 @@ public:
     void request(const std::shared_ptr<BlobEntry>& entry, int64_t nowNs);
 
     Result<void> input(const BlobBeginMessage& message);
+    // Errors: a damaged piece, which is requested again.
     Result<void> input(const BlobDataMessage& message, int64_t nowNs);
     // Maps the blob. After a failure its bytes are requested when a state needs them, and mappingProblem() has the
     // reason.
@@ -79,6 +82,8 @@ private:
     std::map<BlobName, Request> requests_;
     std::deque<std::shared_ptr<BlobEntry>> queue_; // requests that wait for their turn
     std::deque<std::pair<BlobName, BlobAssembly>> pushes_;
+    std::vector<std::byte> decoded_; // scratch memory
+    LinkRate rate_;                  // of the connection from the writer
     std::string mappingProblem_;
     std::vector<Blob> pushed_; // complete, until a commit refers to them
 };

@@ -4,7 +4,10 @@
 
 namespace mural::objects {
 
-void sendBlobBytes(const Blob& blob, uint64_t offset, uint64_t count, const MessageFunction& emit) {
+namespace {
+
+template <class MakePiece>
+void sendPieces(const Blob& blob, uint64_t offset, uint64_t count, const MessageFunction& emit, MakePiece makePiece) {
     const auto bytes = blob.bytes();
     archive::ByteBuffer buffer;
     const uint64_t from = std::min<uint64_t>(offset, bytes.size());
@@ -12,9 +15,25 @@ void sendBlobBytes(const Blob& blob, uint64_t offset, uint64_t count, const Mess
     for (uint64_t at = from; at < end; at += kBlobPieceBytes) {
         buffer.clear();
         const uint64_t pieceBytes = std::min<uint64_t>(kBlobPieceBytes, end - at);
-        encodeInto(buffer, BlobDataMessage{blob.name(), at, bytes.subspan(at, pieceBytes)});
+        const CodedPiece piece = makePiece(bytes.subspan(at, pieceBytes));
+        encodeInto(buffer, BlobDataMessage{blob.name(), at, piece.coding, static_cast<uint32_t>(pieceBytes),
+                                           piece.codingMicroseconds, piece.bytes});
         emit(buffer.bytes());
     }
+}
+
+} // namespace
+
+void sendBlobBytes(const Blob& blob, uint64_t offset, uint64_t count, const MessageFunction& emit) {
+    sendPieces(blob, offset, count, emit, [](std::span<const std::byte> raw) {
+        return CodedPiece{PieceCoding::Raw, raw, 0};
+    });
+}
+
+void sendBlobBytes(const Blob& blob, uint64_t offset, uint64_t count, PieceCoder& coder, uint64_t bytesPerSecond,
+                   const MessageFunction& emit) {
+    sendPieces(blob, offset, count, emit,
+               [&](std::span<const std::byte> raw) { return coder.code(blob.name(), raw, bytesPerSecond); });
 }
 
 void sendBlob(const Blob& blob, BlobTransfer transfer, const MessageFunction& emit) {

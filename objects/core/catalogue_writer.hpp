@@ -19,8 +19,11 @@ using MessageFunction = std::function<void(std::span<const std::byte> message)>;
 
 // Sends a blob to emit().
 void sendBlob(const Blob& blob, BlobTransfer transfer, const MessageFunction& emit);
-// Sends the part of a blob from `offset` on as BlobData.
+// Sends the part of a blob from `offset` on as BlobData, raw.
 void sendBlobBytes(const Blob& blob, uint64_t offset, uint64_t count, const MessageFunction& emit);
+// The same, coded where that saves time on a connection of this rate; 0: unknown.
+void sendBlobBytes(const Blob& blob, uint64_t offset, uint64_t count, PieceCoder& coder, uint64_t bytesPerSecond,
+                   const MessageFunction& emit);
 
 // Returns the commit that turns version `base`, or nothing, into `state`. The message refers to the bytes of `state`.
 CommitMessage commitOf(ObjectNumber number, const ObjectState& state, const ObjectState* base);

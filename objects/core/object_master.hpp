@@ -93,6 +93,7 @@ private:
     struct Gathered {
         int64_t dueNs = 0;
         std::map<PeerId, Version> askers; // their versions, for objects
+        uint64_t bytesPerSecond = 0;      // of the slowest reader, for blobs
     };
     using BlobRange = std::pair<BlobName, std::pair<uint64_t, uint32_t>>;
 
@@ -105,7 +106,7 @@ private:
     Result<void> want(PeerId reader, const WantMessage& message, int64_t nowNs);
     Result<void> wantBlob(PeerId reader, const WantBlobMessage& message, int64_t nowNs);
     void answerObject(ObjectNumber number, Version wanted, const std::map<PeerId, Version>& askers);
-    void answerBlob(const BlobRange& range, const std::map<PeerId, Version>& askers);
+    void answerBlob(const BlobRange& range, const Gathered& gathered);
     [[nodiscard]] bool keeps(const Object& object) const;
     void emitTo(const std::map<PeerId, Version>& askers, std::span<const std::byte> message);
     void retire(std::shared_ptr<const Slot> slot);
@@ -118,6 +119,7 @@ private:
     std::map<BlobName, std::weak_ptr<BlobEntry>> blobs_; // of kept states
     size_t sweepAt_ = 64;                                // number of blobs at which expired ones are removed
     std::map<BlobName, uint32_t> pushes_;                // uses by the newest pushed states
+    PieceCoder coder_;
     std::map<std::pair<ObjectNumber, Version>, Gathered> wantedObjects_;
     std::map<BlobRange, Gathered> wantedBlobs_;
     std::set<ObjectNumber> aged_; // objects with more than one version

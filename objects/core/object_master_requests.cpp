@@ -57,11 +57,14 @@ Result<void> ObjectMaster::wantBlob(PeerId reader, const WantBlobMessage& messag
     }
     const BlobRange range{message.name, {message.offset, message.count}};
     if (options_.gatherNs == 0) {
-        answerBlob(range, {{reader, 0}});
+        answerBlob(range, {nowNs, {{reader, 0}}, message.bytesPerSecond});
         return {};
     }
     Gathered& gathered = wantedBlobs_[range];
-    if (gathered.askers.empty()) gathered.dueNs = nowNs + options_.gatherNs;
+    const bool isFirst = gathered.askers.empty();
+    if (isFirst) gathered.dueNs = nowNs + options_.gatherNs;
+    gathered.bytesPerSecond =
+        isFirst ? message.bytesPerSecond : std::min(gathered.bytesPerSecond, message.bytesPerSecond);
     gathered.askers[reader] = 0;
     return {};
 }
@@ -80,7 +83,7 @@ void ObjectMaster::tick(int64_t nowNs) {
             ++at;
             continue;
         }
-        answerBlob(at->first, at->second.askers);
+        answerBlob(at->first, at->second);
         at = wantedBlobs_.erase(at);
     }
 }
@@ -114,12 +117,12 @@ void ObjectMaster::answerObject(ObjectNumber number, Version wanted, const std::
     emitTo(askers, encode(commitOf(number, *newest, exact ? exact.get() : base.get())).bytes());
 }
 
-void ObjectMaster::answerBlob(const BlobRange& range, const std::map<PeerId, Version>& askers) {
+void ObjectMaster::answerBlob(const BlobRange& range, const Gathered& gathered) {
     const auto found = blobs_.find(range.first);
     const std::shared_ptr<BlobEntry> entry = found == blobs_.end() ? nullptr : found->second.lock();
-    if (!entry) return emitTo(askers, encode(RefuseMessage{Refusal::UnknownBlob, 0, 0, range.first}).bytes());
-    sendBlobBytes(entry->blob, range.second.first, range.second.second,
-                  [&](std::span<const std::byte> message) { emitTo(askers, message); });
+    if (!entry) return emitTo(gathered.askers, encode(RefuseMessage{Refusal::UnknownBlob, 0, 0, range.first}).bytes());
+    sendBlobBytes(entry->blob, range.second.first, range.second.second, coder_, gathered.bytesPerSecond,
+                  [&](std::span<const std::byte> message) { emitTo(gathered.askers, message); });
 }
 
 } // namespace mural::objects

@@ -115,11 +115,23 @@ void read(MessageReader& from, BlobBeginMessage& m) {
 void write(MessageWriter& to, const BlobDataMessage& m) {
     to.fixed(m.name);
     to.number(m.offset);
+    to.byte(static_cast<uint8_t>(m.coding));
+    if (m.coding != PieceCoding::Raw) {
+        to.number(m.rawBytes);
+        to.number(m.codingMicroseconds);
+    }
     to.raw(m.bytes);
 }
 void read(MessageReader& from, BlobDataMessage& m) {
     m.name = from.fixed<BlobName>();
     m.offset = from.number();
+    const uint8_t coding = from.byte();
+    if (coding >= kPieceCodings) return from.fail();
+    m.coding = static_cast<PieceCoding>(coding);
+    if (m.coding != PieceCoding::Raw) {
+        m.rawBytes = static_cast<uint32_t>(from.numberUpTo(kBlobPieceBytes));
+        m.codingMicroseconds = static_cast<uint32_t>(from.numberUpTo(UINT32_MAX));
+    }
     m.bytes = from.rest();
 }
 
@@ -174,6 +186,7 @@ void write(MessageWriter& to, const WantBlobMessage& m) {
     to.number(m.offset);
     to.number(m.count);
     to.byte(m.takesPlace);
+    to.number(m.bytesPerSecond);
 }
 void read(MessageReader& from, WantBlobMessage& m) {
     m.name = from.fixed<BlobName>();
@@ -182,6 +195,7 @@ void read(MessageReader& from, WantBlobMessage& m) {
     const uint8_t takesPlace = from.byte();
     if (takesPlace > 1) return from.fail();
     m.takesPlace = takesPlace != 0;
+    m.bytesPerSecond = from.number();
 }
 
 void write(MessageWriter& to, const TokenMessage& m) {

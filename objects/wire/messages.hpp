@@ -17,6 +17,7 @@
 #include <mural/sharing.hpp>
 
 #include "objects/blob/blob_memory.hpp"
+#include "objects/blob/piece_coding.hpp"
 
 namespace mural::objects {
 
@@ -112,7 +113,10 @@ struct BlobBeginMessage {
 
 struct BlobDataMessage {
     BlobName name{};
-    uint64_t offset = 0;
+    uint64_t offset = 0; // of the raw bytes
+    PieceCoding coding = PieceCoding::Raw;
+    // Of a coded piece: size of the raw bytes, at most kBlobPieceBytes, and the time that the coding took.
+    uint32_t rawBytes = 0, codingMicroseconds = 0;
     std::span<const std::byte> bytes;
 };
 
@@ -150,8 +154,9 @@ struct WantMessage {
 struct WantBlobMessage {
     BlobName name{};
     uint64_t offset = 0;
-    uint32_t count = 0;      // bytes
-    bool takesPlace = false; // the reader maps the whole blob if the reply is a BlobAt
+    uint32_t count = 0;          // bytes
+    bool takesPlace = false;     // the reader maps the whole blob if the reply is a BlobAt
+    uint64_t bytesPerSecond = 0; // measured rate of the connection to the reader; 0: unknown
 };
 
 // Acknowledges that a reader has applied a version.
