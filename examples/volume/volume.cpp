@@ -226,6 +226,13 @@ class VolumeRenderer : public Renderer {
         return {};
     }
 
+    // Colours of slabs are blended before they are rounded to 8 bits.
+    GlWish wish() const override {
+        GlWish wish;
+        wish.isHalfFloat = true;
+        return wish;
+    }
+
     Composition composition() const override {
         Composition composition;
         composition.by = Composition::By::Over;

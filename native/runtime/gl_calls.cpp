@@ -32,6 +32,7 @@ Result<GlCalls> GlCalls::load(gl::Platform& platform) {
     loader.load("glDeleteFramebuffers", calls.deleteFramebuffers);
     loader.load("glFramebufferTexture2D", calls.framebufferTexture2D);
     loader.load("glBlitFramebuffer", calls.blitFramebuffer);
+    loader.load("glCheckFramebufferStatus", calls.checkFramebufferStatus);
     loader.load("glGenTextures", calls.genTextures);
     loader.load("glDeleteTextures", calls.deleteTextures);
     loader.load("glBindTexture", calls.bindTexture);

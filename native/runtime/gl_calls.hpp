@@ -34,6 +34,7 @@ struct GlCalls {
     PFNGLDELETEFRAMEBUFFERSPROC deleteFramebuffers = nullptr;
     PFNGLFRAMEBUFFERTEXTURE2DPROC framebufferTexture2D = nullptr;
     PFNGLBLITFRAMEBUFFERPROC blitFramebuffer = nullptr;
+    PFNGLCHECKFRAMEBUFFERSTATUSPROC checkFramebufferStatus = nullptr;
     PFNGLGENTEXTURESPROC genTextures = nullptr;
     PFNGLDELETETEXTURESPROC deleteTextures = nullptr;
     PFNGLBINDTEXTUREPROC bindTexture = nullptr;

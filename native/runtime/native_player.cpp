@@ -275,15 +275,23 @@ void NativePlayer::compose(uint32_t clientId, const FramePart& part, uint32_t fr
     rule.deep = target_->depthBits() > 24;
     PicturePart own;
     own.id = {clientId, frame, part.drawn};
-    own.colour.resize(static_cast<size_t>(part.drawn.area()));
-    own.depth.resize(own.colour.size());
-    target_->readColour(part.drawn, GL_RGBA, own.colour.data());
-    if (rule.blends)
-        std::ranges::fill(own.depth, rule.clearedDepth);
+    const auto pixels = static_cast<size_t>(part.drawn.area());
+    rule.hasHalfFloats = rule.blends && target_->isHalfFloat();
+    own.colour.resize(pixels * rule.colourWords());
+    if (rule.hasHalfFloats)
+        target_->readHalfFloats(part.drawn, own.colour.data());
     else
+        target_->readColour(part.drawn, GL_RGBA, own.colour.data());
+    if (!rule.blends) {
+        own.depth.resize(pixels);
         target_->readDepth(part.drawn, own.depth.data());
+    }
     (void)out_.composeParts(own, rule, rule.blends ? blendOrder(task) : std::vector<int>());
-    if (!part.shown.empty()) composed_ = std::move(own);
+    if (part.shown.empty()) return;
+    if (rule.hasHalfFloats)
+        target_->writeHalfFloats(part.drawn, own.colour.data());
+    else
+        composed_ = std::move(own);
 }
 
 // The ranks from back to front. Every node evaluates the same function, so all nodes agree.

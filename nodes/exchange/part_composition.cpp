@@ -57,10 +57,10 @@ void foldAtClearDepth(const CompositeRow& r, LayerOrder side, const CompositeRul
 
 void compositeRow(const CompositeRow& row, LayerOrder side, const CompositeRule& rule) {
     if (rule.blends) {
-        compositor::blendOverRow(compositor::PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(row.colour),
-                                 reinterpret_cast<const std::byte*>(row.otherColour), row.count,
-                                 side == LayerOrder::Later ? compositor::SourceSide::InFront
-                                                           : compositor::SourceSide::Behind);
+        const auto format = rule.hasHalfFloats ? compositor::PlaneFormat::Rgba16F : compositor::PlaneFormat::Rgba8;
+        compositor::blendOverRow(
+            format, reinterpret_cast<std::byte*>(row.colour), reinterpret_cast<const std::byte*>(row.otherColour),
+            row.count, side == LayerOrder::Later ? compositor::SourceSide::InFront : compositor::SourceSide::Behind);
         return;
     }
     if (rule.deep) return foldDeep(row, side, rule);

@@ -16,10 +16,14 @@ using compositor::RowRange;
 
 // Coarser than the compositor's tiles: each piece has a header, and codecs favour wide pieces.
 constexpr int32_t kTilePixels = 64;
-constexpr size_t kHeadBytes = 44, kPieceBytes = 28;
+constexpr size_t kHeadBytes = 48, kPieceBytes = 28;
 
 // A decoded piece fits into a core's cache until it is folded.
 constexpr int32_t kPieceColumns = 512, kPieceRows = 128;
+
+PlaneFormat colourFormatOf(const CompositeRule& rule) {
+    return rule.hasHalfFloats ? PlaneFormat::Rgba16F : PlaneFormat::Rgba8;
+}
 
 // 32-bit integer depths are encoded as opaque words, which a lossless codec permits.
 PlaneFormat depthFormatOf(const CompositeRule& rule) { return rule.deep ? PlaneFormat::D32F : PlaneFormat::D24S8; }
@@ -37,7 +41,8 @@ int32_t int32At(std::span<const std::byte> bytes, size_t at) {
 }
 
 PlaneView viewOf(const std::vector<uint32_t>& words, const PicturePart& part, PlaneFormat format) {
-    return {format, part.id.box.w, part.id.box.h, static_cast<ptrdiff_t>(part.id.box.w) * 4,
+    return {format, part.id.box.w, part.id.box.h,
+            static_cast<ptrdiff_t>(part.id.box.w) * static_cast<ptrdiff_t>(bytesPerPixel(format)),
             reinterpret_cast<const std::byte*>(words.data())};
 }
 
@@ -55,11 +60,14 @@ std::vector<PixelViewport> piecesOf(const compositor::Region& drawn) {
 std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, const CompositeRule& rule,
                                 PartState state, PlaneEncoder& encoder) {
     const PixelViewport band{0, rows.first, part.id.box.w, rows.count()};
-    const PlaneView colour = viewOf(part.colour, part, PlaneFormat::Rgba8).part(band),
-                    depth = viewOf(part.depth, part, depthFormatOf(rule)).part(band);
+    const PlaneView colour = viewOf(part.colour, part, colourFormatOf(rule)).part(band);
+    const auto background = compositor::Background::ofWord(rule.clearedColour);
+    PlaneView depth;
+    if (!rule.blends) depth = viewOf(part.depth, part, depthFormatOf(rule)).part(band);
     const compositor::Region drawn =
-        findRegionOfInterest(colour, compositor::Background::ofWord(rule.clearedColour), depth,
-                             compositor::Background::ofWord(rule.clearedDepth), kTilePixels);
+        rule.blends ? findRegionOfInterest(colour, background, kTilePixels)
+                    : findRegionOfInterest(colour, background, depth, compositor::Background::ofWord(rule.clearedDepth),
+                                           kTilePixels);
     const std::vector<PixelViewport> pieces = piecesOf(drawn);
     std::vector<std::byte> message;
     put32(message, part.id.client);
@@ -67,6 +75,7 @@ std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, c
     for (const int32_t v : {part.id.box.x, part.id.box.y, part.id.box.w, part.id.box.h, rows.first, rows.end})
         put32(message, v);
     put32(message, static_cast<int64_t>(state));
+    put32(message, part.order);
     put32(message, static_cast<int64_t>(pieces.size()));
     for (const PixelViewport& r : pieces) {
         const size_t head = message.size();
@@ -75,7 +84,7 @@ std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, c
         const size_t colourAt = message.size();
         message[head + 16] = std::byte{encoder.encode(colour.part(r), message)};
         const size_t depthAt = message.size();
-        message[head + 17] = std::byte{encoder.encode(depth.part(r), message)};
+        if (!rule.blends) message[head + 17] = std::byte{encoder.encode(depth.part(r), message)};
         storeLittle(message.data() + head + 20, static_cast<uint32_t>(depthAt - colourAt));
         storeLittle(message.data() + head + 24, static_cast<uint32_t>(message.size() - depthAt));
     }
@@ -88,9 +97,9 @@ size_t boundBytesOf(const PixelViewport& box, const RowRange& rows) {
            static_cast<size_t>(box.w) * static_cast<size_t>(rows.count()) * 8;
 }
 
-Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows,
-                             const CompositeRule& rule, PlaneDecoder& decoder,
-                             const std::function<void(const ArrivedPiece&)>& each) {
+Result<PartHead> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows,
+                            const CompositeRule& rule, PlaneDecoder& decoder,
+                            const std::function<void(const ArrivedPiece&)>& each) {
     const auto damaged = [](const std::string& what) {
         return Error{"invalid message with a part of a picture: " + what};
     };
@@ -100,8 +109,10 @@ Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId
                          {int32At(message, 12), int32At(message, 16), int32At(message, 20), int32At(message, 24)}};
     if (came != id || RowRange{int32At(message, 28), int32At(message, 32)} != rows)
         return Error{"parts of different pictures arrived together; this picture is incomplete"};
-    const PartState state = int32At(message, 36) == 0 ? PartState::Complete : PartState::Incomplete;
-    const uint32_t pieces = loadLittle<uint32_t>(message.data() + 40);
+    PartHead head;
+    head.state = int32At(message, 36) == 0 ? PartState::Complete : PartState::Incomplete;
+    head.order = loadLittle<uint32_t>(message.data() + 40);
+    const uint32_t pieces = loadLittle<uint32_t>(message.data() + 44);
     const PixelViewport band{0, rows.first, id.box.w, rows.count()};
     int64_t left = band.area(); // valid pieces do not overlap: rejects messages that decode to more
     std::vector<uint32_t>&colour = decoder.colour(), &depth = decoder.depth();
@@ -119,23 +130,28 @@ Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId
         if (colourBytes > rest.size() || depthBytes > rest.size() - colourBytes)
             return damaged("it ends before its last piece");
         left -= area.area();
-        colour.resize(static_cast<size_t>(area.area()));
-        depth.resize(colour.size());
+        const auto pixels = static_cast<size_t>(area.area());
+        colour.resize(pixels * rule.colourWords());
+        if (!rule.blends) depth.resize(pixels);
         const auto unpack = [&](CodecNumber codec, size_t from, size_t bytes, PlaneFormat format,
                                 std::vector<uint32_t>& into) {
             return decoder.decode(codec, rest.subspan(from, bytes),
-                                  {format, area.w, area.h, static_cast<ptrdiff_t>(area.w) * 4,
+                                  {format, area.w, area.h,
+                                   static_cast<ptrdiff_t>(area.w) * static_cast<ptrdiff_t>(bytesPerPixel(format)),
                                    reinterpret_cast<std::byte*>(into.data())});
         };
-        if (auto r = unpack(colourCodec, 0, colourBytes, PlaneFormat::Rgba8, colour); !r)
+        if (auto r = unpack(colourCodec, 0, colourBytes, colourFormatOf(rule), colour); !r)
             return damaged(r.error().message);
-        if (auto r = unpack(depthCodec, colourBytes, depthBytes, depthFormatOf(rule), depth); !r)
+        if (rule.blends) {
+            if (depthBytes != 0) return damaged("a piece has depth, although the parts are blended");
+        } else if (auto r = unpack(depthCodec, colourBytes, depthBytes, depthFormatOf(rule), depth); !r) {
             return damaged(r.error().message);
-        each({area, colour.data(), depth.data()});
+        }
+        each({area, colour.data(), rule.blends ? nullptr : depth.data()});
         rest = rest.subspan(colourBytes + depthBytes);
     }
     if (!rest.empty()) return damaged("it is longer than its pieces");
-    return state;
+    return head;
 }
 
 } // namespace mural

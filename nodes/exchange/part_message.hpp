@@ -16,7 +16,7 @@ namespace mural {
 // Incomplete: a lost node's contribution is missing.
 enum class PartState : uint8_t { Complete, Incomplete };
 
-// Encodes the rectangles of these rows that differ from the clear values.
+// Encodes the rectangles of these rows that differ from the clear values. Parts that are blended have no depth.
 std::vector<std::byte> packPart(const PicturePart& part, const compositor::RowRange& rows, const CompositeRule& rule,
                                 PartState state, PlaneEncoder& encoder);
 
@@ -27,12 +27,16 @@ std::vector<std::byte> packPart(const PicturePart& part, const compositor::RowRa
 struct ArrivedPiece {
     PixelViewport area;
     const uint32_t* colour;
-    const uint32_t* depth;
+    const uint32_t* depth; // null: the parts are blended
+};
+struct PartHead {
+    PartState state = PartState::Complete;
+    uint32_t order = 0; // PicturePart::order of the sender
 };
 // Accepts arbitrary bytes. Errors: a malformed message; another picture or other rows. Pieces before the damage have
 // been delivered.
-Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const compositor::RowRange& rows,
-                             const CompositeRule& rule, PlaneDecoder& decoder,
-                             const std::function<void(const ArrivedPiece&)>& each);
+Result<PartHead> unpackPart(std::span<const std::byte> message, const PictureId& id, const compositor::RowRange& rows,
+                            const CompositeRule& rule, PlaneDecoder& decoder,
+                            const std::function<void(const ArrivedPiece&)>& each);
 
 } // namespace mural

@@ -11,6 +11,18 @@ namespace mural {
 using compositor::Step;
 using compositor::Strategy;
 
+namespace {
+
+// FNV-1a. Never 0 for an order.
+uint32_t hashOf(const std::vector<int>& order) {
+    if (order.empty()) return 0;
+    uint32_t hash = 2166136261u;
+    for (const int rank : order) hash = (hash ^ static_cast<uint32_t>(rank)) * 16777619u;
+    return std::max(hash, 1u);
+}
+
+} // namespace
+
 PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes)
     : config_(std::move(config)), strategy_(config_.strategy), routes_(routes) {}
 
@@ -67,6 +79,7 @@ PixelViewport PictureComposer::compose(PicturePart& part, const CompositeRule& r
                                                       : compositor::makeSchedule(strategy_, order, rows_);
         steps_ = std::move(schedule[static_cast<size_t>(config_.rank)]);
     }
+    part.order = hashOf(order);
     CompositeRule used = rule;
     using compositor::DepthFunction;
     if (config_.plant == "tie")
@@ -98,7 +111,7 @@ void PictureComposer::take(PicturePart& part, const Step& step, const CompositeR
     if (lost_.contains(step.peer)) return;
     const Deadline deadline = Deadline::at(beganNs + (config_.partMs + config_.stageMs * step.stage) * kNsPerMs);
     auto message = receive(step.peer, boundBytesOf(part.id.box, step.rows), deadline);
-    if (!message) return lost(step.peer, message.error().message);
+    if (!message) return lost(step.peer, message.error().message + hintAboutOrder());
     Step::Kind kind = step.kind;
     // Fault injection: drops the contributions of others, drops a band, or swaps the draw order.
     if (config_.plant == "range" ||
@@ -109,24 +122,44 @@ void PictureComposer::take(PicturePart& part, const Step& step, const CompositeR
     auto done = unpackPart(*message, part.id, step.rows, rule, decoder_,
                            [&](const ArrivedPiece& piece) { put(part, piece, kind, rule); });
     if (done) {
-        incomplete_ = incomplete_ || *done == PartState::Incomplete;
+        incomplete_ = incomplete_ || done->state == PartState::Incomplete;
+        if (done->order != part.order) reportOrder(step.peer);
         return;
     }
     routes_.giveUp(step.peer);
-    lost(step.peer, "range " + std::to_string(step.peer + 1) + ": " + done.error().message);
+    lost(step.peer, "range " + std::to_string(step.peer + 1) + ": " + done.error().message + hintAboutOrder());
+}
+
+void PictureComposer::reportOrder(int rank) {
+    if (std::exchange(hasReportedOrder_, true)) return;
+    log::warning(
+        log::Topic::Exchange, "the nodes of ranges ", config_.rank + 1, " and ", rank + 1,
+        " blend in different orders, so the picture is wrong; Renderer::order must return the same positions on "
+        "all nodes");
+}
+
+// With strategies other than serial and direct-send, the order also selects the partners of a node. Different orders
+// then let nodes wait for parts that others do not send.
+std::string PictureComposer::hintAboutOrder() const {
+    const bool ordersPartners = strategy_ != Strategy::Serial && strategy_ != Strategy::DirectSend;
+    return order_.empty() || !ordersPartners ? ""
+                                             : "; a Renderer::order that differs between nodes has this effect, too";
 }
 
 void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Kind kind, const CompositeRule& rule) {
-    const auto width = static_cast<size_t>(piece.area.w);
+    const auto width = static_cast<size_t>(piece.area.w), words = rule.colourWords();
     for (int32_t y = 0; y < piece.area.h; ++y) {
         const size_t to = part.at(piece.area.x, piece.area.y + y), from = static_cast<size_t>(y) * width;
         if (kind == Step::Kind::Place) {
-            std::copy_n(piece.colour + from, width, part.colour.data() + to);
-            std::copy_n(piece.depth + from, width, part.depth.data() + to);
+            std::copy_n(piece.colour + from * words, width * words, part.colour.data() + to * words);
+            if (!rule.blends) std::copy_n(piece.depth + from, width, part.depth.data() + to);
         } else {
-            compositeRow(
-                {part.colour.data() + to, part.depth.data() + to, piece.colour + from, piece.depth + from, width},
-                kind == Step::Kind::FoldLater ? LayerOrder::Later : LayerOrder::Earlier, rule);
+            CompositeRow row{part.colour.data() + to * words, nullptr, piece.colour + from * words, nullptr, width};
+            if (!rule.blends) {
+                row.depth = part.depth.data() + to;
+                row.otherDepth = piece.depth + from;
+            }
+            compositeRow(row, kind == Step::Kind::FoldLater ? LayerOrder::Later : LayerOrder::Earlier, rule);
         }
     }
     changed_ = unite(changed_, piece.area);

@@ -35,7 +35,8 @@ public:
 
     // Called by each node with its part. Afterwards the collector's part is the whole picture; other nodes' parts are
     // undefined. Returns the area that may have changed. Reports each lost node once; its range is missing.
-    // `order`: the ranks, the first drawn first; empty: in the order of their numbers. Equal on all nodes.
+    // `order`: the ranks, the first drawn first; empty: in the order of their numbers. Equal on all nodes; another
+    // order of another node is reported once, and makes the picture wrong.
     PixelViewport compose(PicturePart& part, const CompositeRule& rule, const std::vector<int>& order = {});
     // From the next picture on, this incarnation of the rank takes part, and so do all ranks except `absent`. All
     // participants must call this between the same two pictures.
@@ -50,6 +51,8 @@ private:
     void take(PicturePart& part, const compositor::Step& step, const CompositeRule& rule, int64_t beganNs);
     void put(PicturePart& part, const ArrivedPiece& piece, compositor::Step::Kind kind, const CompositeRule& rule);
     void lost(int rank, const std::string& why);
+    void reportOrder(int rank);
+    [[nodiscard]] std::string hintAboutOrder() const;
 
     const ComposerConfig config_;
     compositor::Strategy strategy_; // serial while nodes are lost
@@ -62,7 +65,8 @@ private:
     PixelViewport changed_;
     std::set<int> lost_;
     bool incomplete_ = false; // some contribution is missing
-    bool agreed_ = true;      // the first picture needs no decision
+    bool hasReportedOrder_ = false;
+    bool agreed_ = true; // the first picture needs no decision
 };
 
 } // namespace mural

@@ -19,8 +19,10 @@ struct PictureId {
 
 struct PicturePart {
     PictureId id;
-    std::vector<uint32_t> colour; // [y][x], bytes R G B A; rows bottom first
-    std::vector<uint32_t> depth;  // [y][x], 0 to 2^32 - 1
+    // [y][x], rows bottom first: bytes R G B A, or half floats R G B A in two words (CompositeRule::hasHalfFloats)
+    std::vector<uint32_t> colour;
+    std::vector<uint32_t> depth; // [y][x], 0 to 2^32 - 1; may be empty if the parts are blended
+    uint32_t order = 0;          // hash of the order in which ranges are blended; 0: of their numbers
 
     [[nodiscard]] size_t at(int32_t x, int32_t y) const {
         return static_cast<size_t>(y) * static_cast<size_t>(id.box.w) + static_cast<size_t>(x);

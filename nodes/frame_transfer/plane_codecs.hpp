@@ -31,7 +31,7 @@ Result<WantedCodec> wantedCodec(const std::string& name);
 // Codec numbers in messages. Both ends are of one build and know the user's choice.
 using CodecNumber = uint8_t;
 
-// For planes in RGBA8, D24S8 or D32F. Used by one thread.
+// For planes in RGBA8, RGBA16F, D24S8 or D32F. Used by one thread.
 class PlaneEncoder {
 public:
     // Planes that the codec does not support (depth, for lossy ones) use the fastest codec, as do all planes for an

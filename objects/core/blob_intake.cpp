@@ -38,7 +38,7 @@ void BlobIntake::startRequests(int64_t nowNs) {
         if (entry->isHere || entry.use_count() == 1) continue; // arrived, or no state refers to it any more
         const auto [at, isNew] =
             requests_.try_emplace(entry->ref.name, Request{entry, BlobAssembly(entry->ref.name, entry->ref.sizeBytes),
-                                                           0, options_.requestsPlaces, nowNs});
+                                                           0, options_.requestsPlaces, nowNs, nowNs});
         if (isNew) ask(entry->ref.name, at->second, nowNs);
     }
 }
@@ -48,9 +48,8 @@ void BlobIntake::ask(const BlobName& name, Request& request, int64_t nowNs) {
     const uint64_t window = rate_.bytesPerSecond() == 0 ? kFirstWindowBytes : kWindowBytes;
     const uint64_t end = std::min(request.assembly.sizeBytes(), from + window);
     request.askedBytes = end;
-    request.progressNs = nowNs;
+    request.progressNs = request.askedNs = nowNs;
     const bool takesPlace = request.takesPlace && from == 0;
-    rate_.requested(nowNs);
     sender_.toOne(kWriter,
                   WantBlobMessage{name, from, static_cast<uint32_t>(end - from), takesPlace, rate_.bytesPerSecond()});
 }
@@ -84,7 +83,7 @@ Result<void> BlobIntake::input(const BlobDataMessage& message, int64_t nowNs) {
     const auto found = requests_.find(message.name);
     if (found == requests_.end()) return {};
     Request& request = found->second;
-    rate_.received(message.bytes.size(), message.codingMicroseconds * int64_t{1000}, nowNs);
+    rate_.received(message.bytes.size(), message.codingMicroseconds * int64_t{1000}, request.askedNs, nowNs);
     if (!request.assembly.add(message.offset, *raw)) return {}; // a gap; asked for again later
     request.progressNs = nowNs;
     if (!request.assembly.isComplete()) {
@@ -155,7 +154,6 @@ Blob BlobIntake::arrived(const Blob& blob) {
 
 void BlobIntake::tick(int64_t nowNs) {
     std::erase_if(requests_, [](const auto& item) { return item.second.entry.expired(); });
-    if (requests_.empty()) rate_.idle();
     for (auto& [name, request] : requests_)
         if (nowNs - request.progressNs >= kRetryNs) ask(name, request, nowNs);
     startRequests(nowNs);

@@ -32,8 +32,8 @@ public:
         : sender_(sink), options_(options), store_(options.storeBytes) {}
 
     static constexpr uint32_t kWindowBytes = 2U << 20;
-    static constexpr uint32_t kFirstWindowBytes = kBlobPieceBytes; // raw, until the rate of the connection is known
-    static constexpr size_t kMaxRequests = 4;                      // at the same time
+    static constexpr uint32_t kFirstWindowBytes = 2 * kBlobPieceBytes; // raw, until the rate of the connection is known
+    static constexpr size_t kMaxRequests = 4;                          // at the same time
     static constexpr int64_t kRetryNs = 1'000'000'000;
 
     // Returns the entry for a reference. All states share it. If the blob is not here, request() it or wait for it.
@@ -68,6 +68,7 @@ private:
         uint64_t askedBytes = 0;
         bool takesPlace = false; // no place of the blob was invalid
         int64_t progressNs = 0;
+        int64_t askedNs = 0;
     };
     // Returns the stored blob; it stays in the store as long as a copy exists.
     Blob arrived(const Blob& blob);

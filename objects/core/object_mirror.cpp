@@ -256,11 +256,21 @@ const ShareMessage* ObjectMirror::shareOf(std::string_view name, const archive::
         const auto object = objects_.find(at->second);
         if (object == objects_.end() || frame >= object->second.endFrame) continue;
         const ShareMessage& share = object->second.share;
-        const bool sameLayout = share.layoutHash == layout.hash;
-        if (sameLayout && share.typeName == typeName) return &share;
-        if (!best || (sameLayout && best->layoutHash != layout.hash)) best = &share;
+        if (share.typeName != typeName) continue;
+        if (share.layoutHash == layout.hash) return &share;
+        best = &share;
     }
     return best;
+}
+
+std::string ObjectMirror::typesNamed(std::string_view name) const {
+    std::string types;
+    const auto range = names_.equal_range(name);
+    for (auto at = range.first; at != range.second; ++at) {
+        const auto object = objects_.find(at->second);
+        if (object != objects_.end()) types += (types.empty() ? "" : ", ") + object->second.share.typeName;
+    }
+    return types;
 }
 
 void ObjectMirror::want(const AnyRef& ref, int64_t nowNs) {

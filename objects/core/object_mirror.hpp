@@ -51,9 +51,11 @@ public:
     // Returns the version that a frame uses.
     [[nodiscard]] Found findAtFrame(const Uuid& id, uint64_t frame) const;
     [[nodiscard]] Version versionAtFrame(const Uuid& id, uint64_t frame) const; // 0: none
-    // Returns the object with this name that a frame sees, preferably one with this layout. Null: none.
+    // Returns the object with this name and type that a frame sees, preferably one with this layout. Null: none.
     [[nodiscard]] const ShareMessage* shareOf(std::string_view name, const archive::TypeLayout& layout,
                                               uint64_t frame) const;
+    // Returns the types of the objects with this name, separated by commas.
+    [[nodiscard]] std::string typesNamed(std::string_view name) const;
     [[nodiscard]] bool isKnown(const Uuid& id) const { return numbers_.contains(id); }
 
     // Requests an object, or missing blobs of its state, unless that is under way.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <mural/sharing.hpp>
+
 #include "objects/core/object_names.hpp"
 #include "objects/ends/reader_core.hpp"
 
@@ -164,7 +166,7 @@ Result<ObjectReader::AnySnapshot> ObjectReader::stateAtAny(uint64_t frame, const
 
 Result<ObjectReader::AnySnapshot> ObjectReader::stateAtAny(uint64_t frame, std::string_view name,
                                                            const archive::TypeOperations& type, Deadline deadline) {
-    return core_->wait(
+    auto found = core_->wait(
         [&](AnyRef& wanted) -> ObjectMirror::Found {
             const objects::ShareMessage* const share = core_->mirror.shareOf(name, type.layout, frame);
             if (!share) return {};
@@ -173,6 +175,15 @@ Result<ObjectReader::AnySnapshot> ObjectReader::stateAtAny(uint64_t frame, std::
             return core_->mirror.findAtFrame(share->id, frame);
         },
         type, deadline);
+    if (found) return found;
+    const std::lock_guard lock(core_->mutex);
+    if (core_->mirror.shareOf(name, type.layout, frame) != nullptr) return found.error();
+    const std::string others = core_->mirror.typesNamed(name);
+    const bool isState = name.starts_with(native::kStatePrefix);
+    const std::string_view own = isState ? name.substr(native::kStatePrefix.size()) : name;
+    return Error{std::string("the application has no ") + (isState ? "state" : "object") + " of type " +
+                 type.layout.typeName + (own.empty() ? "" : " with the name \"" + std::string(own) + "\"") +
+                 (others.empty() ? "" : "; with this name it has " + others)};
 }
 
 void ObjectReader::prefetch(std::span<const AnyRef> refs) {

@@ -30,15 +30,15 @@ PicturePart drawnPart(std::mt19937& random, int32_t width, int32_t height, const
     return part;
 }
 
-Result<PartState> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows,
-                             const CompositeRule& rule) {
+Result<PartHead> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows,
+                            const CompositeRule& rule) {
     PlaneDecoder decoder;
     return unpackPart(message, into.id, rows, rule, decoder, [&](const ArrivedPiece& p) {
         ASSERT_TRUE((PixelViewport{0, rows.first, into.id.box.w, rows.count()}.contains(p.area)));
         for (int32_t y = 0; y < p.area.h; ++y)
             for (int32_t x = 0; x < p.area.w; ++x) {
                 into.colour[into.at(p.area.x + x, p.area.y + y)] = p.colour[y * p.area.w + x];
-                into.depth[into.at(p.area.x + x, p.area.y + y)] = p.depth[y * p.area.w + x];
+                if (p.depth != nullptr) into.depth[into.at(p.area.x + x, p.area.y + y)] = p.depth[y * p.area.w + x];
             }
     });
 }
@@ -71,9 +71,36 @@ TEST(PartMessage, omitsUndrawnPixels) {
     const CompositeRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = clearedPart(1920, 1080, rule);
-    EXPECT_EQ(packPart(part, {0, 1080}, rule, PartState::Complete, encoder).size(), 44u);
+    EXPECT_EQ(packPart(part, {0, 1080}, rule, PartState::Complete, encoder).size(), 48u);
     draw(part, part.at(1000, 500), 1, 0, rule);
     EXPECT_LT(packPart(part, {0, 1080}, rule, PartState::Complete, encoder).size(), 1000u);
+}
+
+TEST(PartMessage, hasNoDepthIfThePartsAreBlended) {
+    std::mt19937 random(5);
+    CompositeRule rule;
+    rule.blends = true;
+    PicturePart part = clearedPart(200, 100, rule);
+    for (size_t at = 0; at < part.colour.size(); at += 3) part.colour[at] = static_cast<uint32_t>(random());
+    part.order = 77;
+    PlaneEncoder encoder;
+    CompositeRule deep = rule;
+    deep.blends = false;
+    const size_t withDepth = packPart(part, {0, 100}, deep, PartState::Complete, encoder).size();
+    part.depth.clear();
+    const auto message = packPart(part, {0, 100}, rule, PartState::Complete, encoder);
+    EXPECT_LT(message.size(), withDepth);
+    PicturePart back = clearedPart(200, 100, rule);
+    back.depth.clear();
+    const auto done = unpackInto(back, message, {0, 100}, rule);
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(done->order, 77u);
+    EXPECT_EQ(back.colour, part.colour);
+    PicturePart depths = clearedPart(200, 100, deep);
+    depths.colour[7] = depths.depth[7] = 1;
+    const auto other = unpackInto(back, packPart(depths, {0, 100}, deep, PartState::Complete, encoder), {0, 100}, rule);
+    ASSERT_FALSE(other);
+    EXPECT_NE(other.error().message.find("a piece has depth"), std::string::npos) << other.error().message;
 }
 
 TEST(PartMessage, enlargesNoiseByItsHeadersOnly) {
@@ -93,7 +120,7 @@ TEST(PartMessage, distinguishesPictures) {
     PlaneEncoder encoder;
     PicturePart part = clearedPart(64, 64, rule);
     const auto message = packPart(part, {0, 32}, rule, PartState::Incomplete, encoder);
-    EXPECT_EQ(*unpackInto(part, message, {0, 32}, rule), PartState::Incomplete);
+    EXPECT_EQ(unpackInto(part, message, {0, 32}, rule)->state, PartState::Incomplete);
     EXPECT_FALSE(unpackInto(part, message, {32, 64}, rule));
     ++part.id.serial;
     EXPECT_EQ(unpackInto(part, message, {0, 32}, rule).error().message,

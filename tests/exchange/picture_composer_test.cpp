@@ -4,6 +4,7 @@
 #include <mutex>
 #include <thread>
 
+#include "compositor/kernels/half_float.hpp"
 #include "nodes/exchange/picture_composer.hpp"
 #include "tests/exchange/fake_network.hpp"
 #include "tests/exchange/test_scenes.hpp"
@@ -98,6 +99,126 @@ TEST(PictureComposer, showsPlantedFaults) {
             EXPECT_NE(compose(scene, strategy, plant).picture.colour, scene.whole.colour)
                 << nameOf(strategy) << " " << plant;
         }
+}
+
+// Random premultiplied colours of a rank, about half of them transparent.
+PicturePart translucentPart(std::mt19937& random, const CompositeRule& rule) {
+    PicturePart part = clearedPart(61, 90, rule);
+    part.depth.clear();
+    for (uint32_t& colour : part.colour) {
+        const uint32_t alpha = random() % 2 ? 0 : random() % 256;
+        const auto channel = [&] { return alpha == 0 ? 0 : static_cast<uint32_t>(random()) % (alpha + 1); };
+        colour = alpha << 24 | channel() << 16 | channel() << 8 | channel();
+    }
+    return part;
+}
+
+CompositeRule blendingRule(bool hasHalfFloats = false) {
+    CompositeRule rule;
+    rule.blends = true;
+    rule.hasHalfFloats = hasHalfFloats;
+    return rule;
+}
+
+// Blends parts of `orders.size()` ranks, each with an order of its own.
+Outcome blend(const std::vector<PicturePart>& parts, Strategy strategy, const std::vector<std::vector<int>>& orders,
+              int64_t partMs = 20'000, const CompositeRule& rule = blendingRule()) {
+    FakeNetwork network;
+    Outcome outcome;
+    const RecordedLog log;
+    std::vector<std::thread> nodes;
+    for (size_t rank = 0; rank < parts.size(); ++rank)
+        nodes.emplace_back([&, rank] {
+            FakeRoutes routes(network, {static_cast<int>(rank), 0});
+            PictureComposer composer(
+                {strategy, static_cast<int>(rank), static_cast<int>(parts.size()), partMs, 60'000, 100, ""}, routes);
+            PicturePart part = parts[rank];
+            composer.compose(part, rule, orders[rank]);
+            if (rank == 0) outcome.picture = std::move(part);
+        });
+    for (std::thread& node : nodes) node.join();
+    outcome.lines = log.texts();
+    return outcome;
+}
+
+std::vector<PicturePart> translucentParts(int ranks) {
+    std::mt19937 random(41);
+    const CompositeRule rule = blendingRule();
+    std::vector<PicturePart> parts;
+    for (int rank = 0; rank < ranks; ++rank) parts.push_back(translucentPart(random, rule));
+    return parts;
+}
+
+// Strategies round in different orders, so the values differ by the rounding of each step.
+TEST(PictureComposer, blendsInTheGivenOrderWithEveryStrategy) {
+    const CompositeRule rule = blendingRule();
+    for (const Strategy strategy : kEveryStrategy)
+        for (const std::vector<int>& order : {std::vector{0, 1}, {1, 0}, {2, 0, 1}, {3, 1, 4, 0, 2}}) {
+            const auto parts = translucentParts(static_cast<int>(order.size()));
+            PicturePart expected = parts[static_cast<size_t>(order.front())];
+            for (size_t i = 1; i < order.size(); ++i) {
+                const PicturePart& next = parts[static_cast<size_t>(order[i])];
+                compositeRow({expected.colour.data(), nullptr, next.colour.data(), nullptr, next.colour.size()},
+                             LayerOrder::Later, rule);
+            }
+            const Outcome made = blend(parts, strategy, std::vector(order.size(), order));
+            EXPECT_TRUE(made.lines.empty()) << made.lines.front();
+            int most = 0;
+            for (size_t i = 0; i < expected.colour.size(); ++i)
+                for (int shift = 0; shift < 32; shift += 8)
+                    most = std::max(most, std::abs(static_cast<int>(made.picture.colour[i] >> shift & 255) -
+                                                   static_cast<int>(expected.colour[i] >> shift & 255)));
+            EXPECT_LE(most, static_cast<int>(order.size())) << nameOf(strategy) << ", " << order.size();
+        }
+}
+
+uint32_t halfOf(uint32_t steps) { return compositor::halfOfFloat(static_cast<float>(steps) / 1024); }
+
+TEST(PictureComposer, blendsHalfFloats) {
+    std::mt19937 random(43);
+    const CompositeRule rule = blendingRule(true);
+    std::vector<PicturePart> parts;
+    for (int rank = 0; rank < 2; ++rank) {
+        PicturePart part = clearedPart(61, 90, rule);
+        part.depth.clear();
+        part.colour.resize(2 * part.colour.size());
+        for (size_t i = 0; i < part.colour.size(); i += 2) {
+            if (random() % 2) continue; // transparent
+            part.colour[i] = halfOf(random() % 2048) | halfOf(random() % 2048) << 16;
+            part.colour[i + 1] = halfOf(random() % 2048) | halfOf(random() % 1025) << 16;
+        }
+        parts.push_back(std::move(part));
+    }
+    PicturePart expected = parts[1]; // the back
+    compositeRow({expected.colour.data(), nullptr, parts[0].colour.data(), nullptr, expected.colour.size() / 2},
+                 LayerOrder::Later, rule);
+    for (const Strategy strategy : kEveryStrategy) {
+        const Outcome made = blend(parts, strategy, {{1, 0}, {1, 0}}, 20'000, rule);
+        EXPECT_TRUE(made.lines.empty()) << made.lines.front();
+        EXPECT_EQ(made.picture.colour, expected.colour) << nameOf(strategy);
+    }
+}
+
+TEST(PictureComposer, reportsOrdersThatDifferBetweenNodes) {
+    const auto parts = translucentParts(3);
+    const std::vector<std::vector<int>> orders{{0, 1, 2}, {0, 1, 2}, {2, 1, 0}};
+    for (const Strategy strategy : {Strategy::Serial, Strategy::DirectSend}) {
+        const Outcome made = blend(parts, strategy, orders);
+        ASSERT_FALSE(made.lines.empty()) << nameOf(strategy);
+        for (const std::string& line : made.lines)
+            EXPECT_NE(line.find("blend in different orders, so the picture is wrong; Renderer::order must return the "
+                                "same positions on all nodes"),
+                      std::string::npos)
+                << line;
+    }
+    // The order selects the partners of a node. No node waits forever.
+    for (const Strategy strategy : kEveryStrategy) {
+        if (strategy == Strategy::Serial || strategy == Strategy::DirectSend) continue;
+        const Outcome made = blend(parts, strategy, orders, 200);
+        ASSERT_FALSE(made.lines.empty()) << nameOf(strategy);
+        for (const std::string& line : made.lines)
+            EXPECT_NE(line.find("Renderer::order"), std::string::npos) << nameOf(strategy) << ": " << line;
+    }
 }
 
 // The node's draws are missing; no node waits forever, and each node that waited reports the loss once.

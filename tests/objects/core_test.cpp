@@ -309,8 +309,10 @@ TEST(ObjectMirror, endsObjectsFromTheFrameInPreparationOn) {
     mirror.frame(2);
     EXPECT_EQ(mirror.findAtFrame(kId, 1).presence, ObjectMirror::Presence::Here);
     EXPECT_EQ(mirror.findAtFrame(kId, 2).presence, ObjectMirror::Presence::Unknown);
-    EXPECT_NE(mirror.shareOf("mesh", archive::TypeLayout(), 1), nullptr);
-    EXPECT_EQ(mirror.shareOf("mesh", archive::TypeLayout(), 2), nullptr);
+    archive::TypeLayout layout;
+    layout.typeName = "Type";
+    EXPECT_NE(mirror.shareOf("mesh", layout, 1), nullptr);
+    EXPECT_EQ(mirror.shareOf("mesh", layout, 2), nullptr);
     mirror.frameDone(1);
     EXPECT_EQ(mirror.objectCount(), 0U);
 }

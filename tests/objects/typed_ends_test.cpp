@@ -114,6 +114,25 @@ TEST(TypedEnds, distinguishTypesOfOneLayoutAndName) {
     EXPECT_EQ(pair.reader().stateAt<Clock>(1, "", kAtOnce).value()->value, 2);
 }
 
+// Objects and states without a name do not meet, and the type decides between equal layouts.
+TEST(TypedEnds, findStatesByTypeAndName) {
+    Pair pair;
+    auto camera = taken(pair.writer.share(Camera{1}));
+    auto state = taken(pair.writer.share(Camera{2}, {.name = native::stateName("")}));
+    ASSERT_TRUE(camera.commit().ok() && state.commit().ok());
+    pair.exchange();
+    pair.end.frame(1);
+    EXPECT_EQ(pair.reader().stateAt<Camera>(1, native::stateName(""), kAtOnce).value()->value, 2);
+    const auto clock = pair.reader().stateAt<Clock>(1, native::stateName(""), kAtOnce);
+    ASSERT_FALSE(clock) << "of the same layout";
+    EXPECT_EQ(clock.error().message, "the application has no state of type " + archive::layoutOf<Clock>().typeName +
+                                         "; with this name it has " + archive::layoutOf<Camera>().typeName);
+    const auto named = pair.reader().stateAt<Camera>(1, native::stateName("left"), kAtOnce);
+    ASSERT_FALSE(named);
+    EXPECT_EQ(named.error().message, "the application has no state of type " + archive::layoutOf<Camera>().typeName +
+                                         " with the name \"left\"");
+}
+
 TEST(TypedEnds, receiveInTheWaitingThread) {
     Pair pair;
     auto scene = taken(pair.writer.share(Scene{.angle = 4}, {.name = "scene"}));

@@ -20,6 +20,7 @@
 #include <mural/queue.hpp>
 #include <mural/render.hpp>
 #include <mural/shared.hpp>
+#include <mural/sharing.hpp>
 
 #include "common/base/clock.hpp"
 #include "common/base/result.hpp"
@@ -70,7 +71,7 @@ public:
         const std::string key(name);
         if (AnyState* const found = findState(typeid(T), key)) return static_cast<State<T>&>(*found).value;
         ShareOptions options;
-        options.name = key;
+        options.name = native::stateName(name);
         auto made = std::make_unique<State<T>>();
         auto object = shareAny(archive::layoutOf<T>(), options);
         if (object)

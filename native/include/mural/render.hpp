@@ -16,6 +16,7 @@
 #include <mural/barrier.hpp>
 #include <mural/object_reader.hpp>
 #include <mural/queue.hpp>
+#include <mural/sharing.hpp>
 
 #include "common/base/clock.hpp"
 #include "common/base/result.hpp"
@@ -67,6 +68,9 @@ struct GlWish {
     int samples = 0;      // multisampling; 0: none
     int depthBits = 24;   // lowest number
     int stencilBits = 8;  // lowest number
+    // Colours are half floats, from RenderTask::clear to the end of overlay: values above 1 and transparent layers keep
+    // their precision, also in By::Over between nodes. Pictures on the wall have 8 bits. Excludes samples.
+    bool isHalfFloat = false;
 };
 
 // How the parts of several ranges become one picture.
@@ -124,7 +128,7 @@ public:
     // Returns the state object of the application with this type and name, as it was when the frame began. Valid until
     // the end of the task. A default-constructed T, and one message, if the application has no such object.
     template <class T> [[nodiscard]] const T& state(std::string_view name = {}) const {
-        auto found = objects().template stateAt<T>(frame().number, name, Deadline::inMs(0));
+        auto found = objects().template stateAt<T>(frame().number, native::stateName(name), Deadline::inMs(0));
         if (found) return *static_cast<const T*>(keep(std::move(*found)));
         reportMissing(found.error().message);
         static const T none{};

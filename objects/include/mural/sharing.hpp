@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace mural {
 
@@ -31,5 +32,16 @@ struct ShareOptions {
     // Name for lookups and messages, at most 255 bytes.
     std::string name = {};
 };
+
+namespace native {
+
+// Begins the name of the object behind a state. Objects of Session::share() have other names. Internal.
+inline constexpr std::string_view kStatePrefix = ":state ";
+// The name of the object behind a state of this name. Internal.
+[[nodiscard]] inline std::string stateName(std::string_view name) {
+    return std::string(kStatePrefix) + std::string(name);
+}
+
+} // namespace native
 
 } // namespace mural

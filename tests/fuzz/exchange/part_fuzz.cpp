@@ -30,13 +30,14 @@ void giveName(std::vector<std::byte>& message, const ExpectedPart& e) {
 PicturePart clearedPart(const ExpectedPart& e) {
     PicturePart part;
     part.id = e.id;
-    part.colour.assign(static_cast<size_t>(e.id.box.area()), e.rule.clearedColour);
-    part.depth.assign(part.colour.size(), e.rule.clearedDepth);
+    const auto pixels = static_cast<size_t>(e.id.box.area());
+    part.colour.assign(pixels * e.rule.colourWords(), e.rule.clearedColour);
+    part.depth.assign(pixels, e.rule.clearedDepth);
     return part;
 }
 
 // Unpacks into the part, as nodes do. Returns nothing if it was rejected.
-std::optional<PartState> unpackInto(PicturePart& part, const std::vector<std::byte>& message, const ExpectedPart& e) {
+std::optional<PartHead> unpackInto(PicturePart& part, const std::vector<std::byte>& message, const ExpectedPart& e) {
     static PlaneDecoder decoder; // keeps its scratch memory, as in the product
     int64_t pixels = 0;
     const PixelViewport band{0, e.rows.first, e.id.box.w, e.rows.count()};
@@ -46,9 +47,15 @@ std::optional<PartState> unpackInto(PicturePart& part, const std::vector<std::by
         for (int32_t y = 0; y < piece.area.h; ++y) {
             const size_t from = static_cast<size_t>(y) * static_cast<size_t>(piece.area.w),
                          at = part.at(piece.area.x, piece.area.y + y);
-            compositeRow({part.colour.data() + at, part.depth.data() + at, piece.colour + from, piece.depth + from,
-                          static_cast<size_t>(piece.area.w)},
-                         LayerOrder::Later, e.rule);
+            must((piece.depth == nullptr) == e.rule.blends, "blended parts have no depth, and others have");
+            const size_t words = e.rule.colourWords();
+            CompositeRow row{part.colour.data() + at * words, nullptr, piece.colour + from * words, nullptr,
+                             static_cast<size_t>(piece.area.w)};
+            if (!e.rule.blends) {
+                row.depth = part.depth.data() + at;
+                row.otherDepth = piece.depth + from;
+            }
+            compositeRow(row, LayerOrder::Later, e.rule);
         }
     });
     must(pixels <= band.area(), "pieces are no more than the rows hold");
@@ -70,10 +77,12 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     const auto state = unpackInto(part, message, expected);
     if (!state) return 0;
     static PlaneEncoder encoder;
-    const std::vector<std::byte> again = packPart(part, expected.rows, expected.rule, *state, encoder);
+    part.order = state->order;
+    const std::vector<std::byte> again = packPart(part, expected.rows, expected.rule, state->state, encoder);
     must(again.size() <= boundBytesOf(expected.id.box, expected.rows), "a message is not larger than its bound");
     PicturePart copy = clearedPart(expected);
-    must(unpackInto(copy, again, expected) == state, "what was taken can be sent on");
+    const auto second = unpackInto(copy, again, expected);
+    must(second && second->state == state->state && second->order == state->order, "what was taken can be sent on");
     must(copy.colour == part.colour && copy.depth == part.depth, "nothing is lost on the way");
     return 1;
 }

@@ -14,7 +14,7 @@ namespace {
 enum class Content { Empty, Sparse, Slope, Noise };
 constexpr const char* kNames[] = {"empty", "sparse", "slope", "noise"};
 
-constexpr size_t kPartHead = 44; // bytes of a message before its pieces
+constexpr size_t kPartHead = 48; // bytes of a message before its pieces
 
 // Returns the header for readExpectedPart: rows 3 to 69 of a picture of 150 x 70.
 std::vector<std::byte> headOf(unsigned how, int32_t width, int32_t height) {
@@ -53,8 +53,9 @@ void saveOf(const std::filesystem::path& folder, unsigned how, Content content) 
     for (int i = 0; i < 400; ++i) { // the encoder measures other codecs meanwhile, and a slow link makes it choose them
         PicturePart part;
         part.id = e.id;
-        part.colour.assign(static_cast<size_t>(e.id.box.area()), e.rule.clearedColour);
-        part.depth.assign(part.colour.size(), e.rule.clearedDepth);
+        const auto pixels = static_cast<size_t>(e.id.box.area());
+        part.colour.assign(pixels * e.rule.colourWords(), e.rule.clearedColour);
+        part.depth.assign(pixels, e.rule.clearedDepth);
         draw(part, content, how % 4 < 2, random);
         const auto message =
             packPart(part, e.rows, e.rule, i % 7 ? PartState::Complete : PartState::Incomplete, encoder);
@@ -87,7 +88,7 @@ void saveRepeated(const std::filesystem::path& folder) {
     const auto message = packPart(part, e.rows, e.rule, PartState::Complete, encoder);
     std::vector<std::byte> input = head;
     input.insert(input.end(), message.begin(), message.begin() + kPartHead);
-    input[head.size() + 40] = std::byte{100};
+    input[head.size() + 44] = std::byte{100};
     for (int i = 0; i < 100; ++i) input.insert(input.end(), message.begin() + kPartHead, message.end());
     std::ofstream(folder / "repeated", std::ios::binary)
         .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
@@ -100,7 +101,7 @@ int main(int argc, char** argv) {
     using mural::fuzz::Content;
     if (argc != 2) return std::fputs("part_fuzz_seeds FOLDER\n", stderr), 2;
     std::filesystem::create_directories(argv[1]);
-    for (const unsigned how : {0U, 3U, 13U, 14U})
+    for (const unsigned how : {0U, 3U, 13U, 14U, 24U, 56U})
         for (const Content content : {Content::Empty, Content::Sparse, Content::Slope, Content::Noise})
             mural::fuzz::saveOf(argv[1], how, content);
     mural::fuzz::saveRepeated(argv[1]);

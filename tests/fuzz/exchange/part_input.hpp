@@ -27,6 +27,9 @@ inline ExpectedPart readExpectedPart(InputReader& in) {
     ExpectedPart e;
     e.rule = {kOrders[how % 4], 0xff102030u, less ? 0xffffffffu : 0u, (how & 4) != 0};
     e.named = (how & 8) != 0;
+    e.rule.blends = (how & 16) != 0;
+    if (e.rule.blends) e.rule.clearedColour = 0;
+    e.rule.hasHalfFloats = e.rule.blends && (how & 32) != 0;
     const int32_t width = in.half() % kMaxPartColumns + 1, height = in.byte() % kMaxPartRows + 1;
     e.id = {3, 7, {5, 9, width, height}};
     e.rows.first = in.byte() % height;

@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <string>
 
@@ -84,9 +85,11 @@ class Turning : public mural::Application {
         options.delivery = mural::Delivery::OnDemand;
         for (int i = 0; i < kChunks; ++i) {
             auto vertices = verticesOf(i);
-            // More bytes of an invisible triangle, which differ from part to part.
-            const Vertex hidden{static_cast<float>(i), 0, 0, 0, 0, 0};
-            vertices.resize(std::max(vertices.size(), chunkBytes_ / sizeof(Vertex) / 3 * 3), hidden);
+            // More bytes of triangles beyond the wall, random so that compression gains nothing.
+            std::mt19937 random(static_cast<uint32_t>(i));
+            const auto beyond = [&random] { return 1e6f + static_cast<float>(random() % 1'000'000); };
+            while (vertices.size() < chunkBytes_ / sizeof(Vertex) / 3 * 3)
+                vertices.push_back({beyond(), beyond(), beyond(), beyond(), beyond(), beyond()});
             auto blob = mural::Blob::copyOf(std::as_bytes(std::span(vertices)));
             if (!blob) return blob.error();
             auto chunk = session.share(Chunk{*blob}, options);

@@ -150,7 +150,9 @@ private:
         writeReport(run_, reportWithCapture(why), console_);
         for (const std::string& line : reportLines(*report_)) console_.say(line);
         reportUnsaved();
-        if (!why.empty()) console_.error("no frame was captured: " + why);
+        if (!why.empty())
+            console_.error((run_.config.nodeProgram.empty() ? "no frame was captured: " : "no frame was drawn: ") +
+                           why);
     }
 
     // Returns the head's report with the findings about the capture, which the head does not know.
@@ -172,10 +174,9 @@ private:
 
     std::string whyNoFrame() {
         const std::string& name = run_.program.front();
+        if (!run_.config.nodeProgram.empty()) return whyNoNativeFrame(name);
         if (everClients_) return name + " created a GL context but showed no picture (no buffer swap)";
         const bool failed = program_.exitStatus() != 0 && !program_.stopRequested();
-        if (!run_.config.nodeProgram.empty() && !failed)
-            return name + " did not use the native API; only such programs draw on the nodes of --node-program";
         if (std::string bypass = bypass_.describeEnded(failed); !bypass.empty()) {
             bypassLines_.push_back(bypass);
             return bypass;
@@ -185,6 +186,16 @@ private:
                    "); its messages are above. Try it with mural run --native; mural doctor checks display and GL";
         return name + " made no GL calls through Mural; check that it is an OpenGL program, and that it keeps "
                       "LD_PRELOAD for its children";
+    }
+
+    [[nodiscard]] std::string whyNoNativeFrame(const std::string& name) const {
+        if (program_.exitStatus() != 0 && !program_.stopRequested())
+            return name + " ended before its first frame (" + program_.describeEnd() + "); its messages are above";
+        if (everClients_) return name + " ended before its first frame";
+        return name +
+               " used no native API (mural::run or Session::open); options of Mural belong before the program: "
+               "mural run --tiles 2x1 -- " +
+               name;
     }
 
     // Reports programs that draw without the capture library: their own notes, and at most one line from an
