@@ -154,6 +154,16 @@ def areas_of_ranges(context):
     return kill_and_compare(context, tiles="config db-of-areas.eqc", missing_columns=range(WIDTH), victims=(3, 0) if length.LONG else (3,), maximum=24)
 
 
+@case
+def areas_of_moving_ranges(context):
+    """Areas and ranges move. The other node of the area takes the range; without the collector the area is left."""
+    for victims in (((1,), (0,)) if length.LONG else ((1,),)):
+        wrong = kill_and_compare_ends(context, ("--db", "2", "--local-nodes", "4", "--balance", "load"), "2x1", victims)
+        if wrong is not None:
+            return "nodes %s: %s" % (victims, wrong)
+    return None
+
+
 @cases.long_case
 def areas_at_random(context):
     """Areas that change with every frame: a returning node must have the current frame's."""

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "balancer/equalizers/make_equalizers.hpp"
 #include "balancer/equalizers/random_equalizer.hpp"
@@ -429,21 +428,22 @@ void LoadBalancer::windowGone(uint32_t client, uint32_t window) {
         });
 }
 
-// The nodes of both eyes draw one part, and the nodes of one moving area composite it, so all of them must live.
-void LoadBalancer::setAvailable(int node, bool isAvailable) {
-    if (!planOf(node).task) return;
-    const auto sharesPart = [&](const NodePlan& a, const NodePlan& b) {
-        return a.task && b.task &&
-               (a.task->compound == b.task->compound || (a.movesArea && a.collector == b.collector));
+// The nodes of both eyes draw one part, so both must live. A moving area needs its collector, and all ranges of it,
+// unless they can move to the others.
+void LoadBalancer::updateAvailable(int node) {
+    const auto lives = [&](const NodePlan& n) { return times_.isAlive(n.node) && !givenUp_.contains(n.node); };
+    const auto needs = [](const NodePlan& a, const NodePlan& b) {
+        if (!b.task) return false;
+        const bool isInArea = a.movesArea && a.collector == b.collector;
+        return a.task->compound == b.task->compound || (isInArea && (!a.movesRange || b.node == b.collector));
     };
-    std::set<Index> compounds;
-    for (const NodePlan& other : nodes_)
-        for (const NodePlan& of : nodes_)
-            if (sharesPart(planOf(node), of) && sharesPart(of, other)) {
-                isAvailable = isAvailable && times_.isAlive(other.node) && !givenUp_.contains(other.node);
-                compounds.insert(other.task->compound);
-            }
-    for (const Index compound : compounds) planner_->changeInput().compounds[at(compound)].isAvailable = isAvailable;
+    const NodePlan& changed = planOf(node);
+    if (!changed.task) return;
+    for (const NodePlan& other : nodes_) {
+        if (!other.task || (other.collector != changed.collector && !needs(other, changed))) continue;
+        planner_->changeInput().compounds[at(other.task->compound)].isAvailable =
+            std::ranges::all_of(nodes_, [&](const NodePlan& n) { return !needs(other, n) || lives(n); });
+    }
 }
 
 void LoadBalancer::nodeLost(int node) {
@@ -452,14 +452,14 @@ void LoadBalancer::nodeLost(int node) {
     times_.lost(node);
     givenUp_.erase(node);
     if (!isActive()) return;
-    setAvailable(node, false);
+    updateAvailable(node);
     advance(true);
 }
 
 void LoadBalancer::nodeJoined(int node) {
     const std::lock_guard lock(mutex_);
     if (!times_.joined(node) || !isActive()) return;
-    setAvailable(node, true);
+    updateAvailable(node);
     advance(true);
 }
 
@@ -467,12 +467,12 @@ Result<void> LoadBalancer::giveUp(int node) {
     const std::lock_guard lock(mutex_);
     if (!isActive() || !planOf(node).movesArea) return Error{"no other node takes its part of the picture"};
     givenUp_[node] = {};
-    setAvailable(node, false);
+    updateAvailable(node);
     advance(true);
     givenUp_[node].number = areas_.number;
     if (areas_.ofNodes[static_cast<size_t>(node)].empty()) return {};
     givenUp_.erase(node);
-    setAvailable(node, true);
+    updateAvailable(node);
     advance(true);
     return Error{"its equalizer does not give its part of the picture to other nodes"};
 }
@@ -480,7 +480,7 @@ Result<void> LoadBalancer::giveUp(int node) {
 void LoadBalancer::takeBack(int node) {
     const std::lock_guard lock(mutex_);
     if (givenUp_.erase(node) == 0) return;
-    setAvailable(node, true);
+    updateAvailable(node);
     advance(true);
 }
 

@@ -107,7 +107,7 @@ private:
     void countFrame(const FrameTimes::Frame& frame);
     void count(Watched& watched) const;
     [[nodiscard]] Result<balance::Equalizer*> find(const std::string& name) const;
-    void setAvailable(int node, bool isAvailable);
+    void updateAvailable(int node); // after its loss or return
     [[nodiscard]] const NodePlan& planOf(int node) const { return nodes_[static_cast<size_t>(node)]; }
 
     mutable std::mutex mutex_;

@@ -1,6 +1,7 @@
 #include "nodes/head/planning/balance_plan.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "balancer/equalizers/make_equalizers.hpp"
 
@@ -51,6 +52,23 @@ AreaRole roleOf(const SessionPlan& plan, const std::vector<int>& nodes) {
     };
     if (std::ranges::all_of(nodes, hasCollector)) return AreaRole::Leads;
     return std::ranges::none_of(nodes, hasCollector) ? AreaRole::Follows : AreaRole::Mixed;
+}
+
+// True if the equalizer divides one area among nodes that composite it: workers of a tile queue with ranges.
+bool dividesGroups(const SessionPlan& plan, const balance::Equalizer& e, const std::vector<int>& nodes) {
+    const config::ResolvedConfig& config = plan.balance->config;
+    const std::vector<Index> targets = e.targets(config);
+    const auto targetOf = [&](int n) {
+        const NodePlan& node = plan.nodes[static_cast<size_t>(n)];
+        const auto found =
+            std::ranges::find_if(targets, [&](Index t) { return isBelow(config, node.task->compound, t); });
+        return found == targets.end() ? kNone : *found;
+    };
+    std::map<int, Index> known; // target by collector
+    return std::ranges::any_of(nodes, [&](int n) {
+        const Index target = targetOf(n);
+        return known.try_emplace(plan.nodes[static_cast<size_t>(n)].collector, target).first->second != target;
+    });
 }
 
 // Returns the nodes and those that composite with them.
@@ -129,9 +147,10 @@ void settleDivision(SessionPlan& plan, const SessionConfig& config, const balanc
         return;
     }
     const std::vector<int> moved = ranges ? nodes : withGroups(plan, nodes);
-    const std::string why = ranges                    ? whyRangesAreFixed(plan, nodes)
-                            : role == AreaRole::Mixed ? "it divides some first ranges of pictures and not all"
-                                                      : whyAreasAreFixed(plan, config, moved);
+    const std::string why = ranges                          ? whyRangesAreFixed(plan, nodes)
+                            : dividesGroups(plan, e, nodes) ? "its nodes draw ranges (--db)"
+                            : role == AreaRole::Mixed       ? "it divides some first ranges of pictures and not all"
+                                                            : whyAreasAreFixed(plan, config, moved);
     if (!why.empty()) {
         plan.warnings.push_back(name + ": " + (ranges ? "ranges" : "areas") + " stay fixed: " + why);
         return;

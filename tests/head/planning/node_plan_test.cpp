@@ -212,7 +212,8 @@ TEST(NodePlan, sharesEachPassAmongTheNodesOfABalancedSession) {
                   c.passes.ranges = 2;
                   c.localNodes = 4;
               }),
-              std::tuple(4u, 0, 4));
+              std::tuple(4u, 4, 4))
+        << "areas, and the ranges of each";
     SessionConfig hosts;
     hosts.balance = balance::Balance::Load;
     hosts.hosts = {"a", "b"};
