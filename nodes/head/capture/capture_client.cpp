@@ -79,6 +79,10 @@ void CaptureClient::stop() {
     replyQueued_.notify_all();
 }
 
+void CaptureClient::detectEnd() {
+    if (programGone()) memory_->wakePump();
+}
+
 void CaptureClient::drop(const std::string& problem) {
     {
         const std::lock_guard lock(mutex_);

@@ -61,6 +61,8 @@ public:
     void drain();
     // Ends both threads soon. Drops the remaining data.
     void stop();
+    // Lets the pump detect the program's end now instead of at its next interval. No effect on a running program.
+    void detectEnd();
 
     void reply(Reply reply);
     CaptureMemory& memory() { return *memory_; }

@@ -30,6 +30,9 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid, capture::ProgramKind kin
                            "with mural run --node-program PROGRAM"
                          : "the render nodes of this session draw a program with the native API only; start this "
                            "program in a session of its own"};
+    // A script starts its next program as soon as one has ended. The wall would show the window of the ended one until
+    // its pump notices, and drop the first frames of the next program.
+    for (const auto& client : all()) client->detectEnd();
     auto memory = CaptureMemory::create(terms_.chunkCount);
     const std::lock_guard lock(mutex_);
     if (!refusal_.empty()) return Error{refusal_};
