@@ -11,6 +11,7 @@
 #include <xcb/xcb.h>
 
 #include "common/log/log.hpp"
+#include "nodes/launch/display_numbers.hpp"
 #include "nodes/launch/program_check.hpp"
 
 namespace mural::launch {
@@ -20,6 +21,7 @@ namespace {
 constexpr int64_t kStartMs = 20'000;
 constexpr int64_t kEndMs = 3'000;
 constexpr int64_t kProbeMs = 5'000;
+constexpr int kAttempts = 8;
 
 class OwnedFd {
 public:
@@ -67,25 +69,59 @@ std::string lastLine(int logFd) {
     return at == std::string::npos ? text : text.substr(at + 1);
 }
 
-SpawnRequest serverRequest(const std::string& binary, int width, int height, const std::string& authority, int numberFd,
-                           int logFd) {
+struct ServerStart {
+    std::string binary;
+    std::string name; // ":99"
+    int width = 0;
+    int height = 0;
+    std::string authority;
+    int logFd = -1;
+};
+
+SpawnRequest serverRequest(const ServerStart& start, int numberFd) {
     SpawnRequest request;
-    request.file = binary;
-    request.arguments = {"Xvfb",      "-displayfd", std::to_string(numberFd),
-                         "-screen",   "0",          std::to_string(width) + "x" + std::to_string(height) + "x24",
-                         "-nolisten", "tcp",        "-noreset",
-                         "-auth",     authority,    "+extension",
-                         "GLX",       "+extension", "RANDR",
-                         "-s",        "0"};
+    request.file = start.binary;
+    request.arguments = {"Xvfb",
+                         start.name,
+                         "-displayfd",
+                         std::to_string(numberFd),
+                         "-screen",
+                         "0",
+                         std::to_string(start.width) + "x" + std::to_string(start.height) + "x24",
+                         "-nolisten",
+                         "tcp",
+                         "-noreset",
+                         "-auth",
+                         start.authority,
+                         "+extension",
+                         "GLX",
+                         "+extension",
+                         "RANDR",
+                         "-s",
+                         "0"};
     Environment environment = Environment::current();
     removeCapture(environment);
     request.environment = environment.entries();
     request.inheritedFds = {numberFd};
-    request.outputFd = logFd;
-    request.errorFd = logFd;
+    request.outputFd = start.logFd;
+    request.errorFd = start.logFd;
     request.ownSession = true; // Ctrl-C is for the program
     request.signalWhenWeDie = SIGTERM;
     return request;
+}
+
+// Returns whether the server accepts connections. false: it has ended or timed out. Error: it can't be started.
+Result<bool> startServer(const ServerStart& start, ChildProcess& server) {
+    int number[2];
+    if (pipe2(number, O_CLOEXEC) != 0)
+        return Error{"cannot create a pipe for Xvfb: " + std::string(std::strerror(errno))};
+    const OwnedFd readEnd(number[0]);
+    OwnedFd writeEnd(number[1]);
+    auto started = ChildProcess::start(serverRequest(start, writeEnd.get()));
+    if (!started) return started.error();
+    server = started.value();
+    writeEnd.reset();
+    return !readDisplayNumber(readEnd.get(), server).empty();
 }
 
 } // namespace
@@ -97,30 +133,33 @@ Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int hei
     }
     auto authority = XAuthority::create();
     if (!authority) return authority.error();
-    int number[2];
-    if (pipe2(number, O_CLOEXEC) != 0)
-        return Error{"cannot create a pipe for Xvfb: " + std::string(std::strerror(errno))};
-    OwnedFd readEnd(number[0]);
-    OwnedFd writeEnd(number[1]);
     const OwnedFd log(memfd_create("mural-xvfb-log", MFD_CLOEXEC));
 
     std::unique_ptr<PrivateDisplay> display(new PrivateDisplay);
     display->authority_ = std::move(authority.value());
-    auto server = ChildProcess::start(
-        serverRequest(binary.path, width, height, display->authority_->path(), writeEnd.get(), log.get()));
-    if (!server) return server.error();
-    display->server_ = server.value();
-    writeEnd.reset();
-    const std::string text = readDisplayNumber(readEnd.get(), display->server_);
-    if (text.empty()) {
-        const std::string words = lastLine(log.get());
-        return Error{"Xvfb did not start a private display of " + std::to_string(width) + "x" + std::to_string(height) +
-                     " pixels" + (words.empty() ? std::string() : ": " + words) +
-                     "; check free memory and /tmp/.X11-unix"};
+    const DisplayNumbers numbers;
+    // Another attempt helps if a server that is not Mural's has taken the number meanwhile.
+    int first = 0;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+        const auto number = numbers.firstFree(first);
+        if (!number) return Error{"all numbers of X displays are in use; remove unused files in /tmp/.X11-unix"};
+        display->name_ = ":" + std::to_string(*number);
+        const auto ready = startServer(
+            {binary.path, display->name_, width, height, display->authority_->path(), log.get()}, display->server_);
+        if (!ready) return ready.error();
+        if (*ready) {
+            log::debug(log::Topic::Launch, "private display ", display->name_, " of ", width, "x", height, " pixels");
+            return display;
+        }
+        display->server_.end(Deadline::inMs(kEndMs));
+        if (numbers.firstFree(*number) != number)
+            first = *number + 1;
+        else if (attempt > 0)
+            break; // the number is not the reason
     }
-    display->name_ = ":" + text;
-    log::debug(log::Topic::Launch, "private display ", display->name_, " of ", width, "x", height, " pixels");
-    return display;
+    const std::string words = lastLine(log.get());
+    return Error{"Xvfb did not start a private display of " + std::to_string(width) + "x" + std::to_string(height) +
+                 " pixels" + (words.empty() ? std::string() : ": " + words) + "; check free memory and /tmp/.X11-unix"};
 }
 
 PrivateDisplay::~PrivateDisplay() {

@@ -392,6 +392,7 @@ LAUNCHERS = {
 
 
 def set_up_network():
+    own_network.own_x_sockets()
     own_network.sh("mount -t tmpfs none /run; mount -t proc none /proc; ip link set lo up")
     # Slurm resolves names only if an interface other than the loopback has an address.
     own_network.sh("ip link add eth0 type veth peer name eth1; ip addr add 10.79.0.1/24 dev eth0; ip link set eth0 up; ip link set eth1 up")

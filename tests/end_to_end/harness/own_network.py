@@ -54,6 +54,11 @@ def sh(script):
         raise RuntimeError((done.stderr.strip().splitlines() or ["exit status %d" % done.returncode])[-1])
 
 
+def own_x_sockets():
+    """Hides the sockets of X servers outside. A server detects others in its own network only, and would replace theirs."""
+    sh("mkdir -m 1777 -p /tmp/.X11-unix; mount -t tmpfs -o mode=1777 none /tmp/.X11-unix")
+
+
 class OwnNetwork:
     """The network. {name: address} are the other machines; this one has `here`. All have an eth0 in one /24.
     single_packets: a sender's packets leave its card one by one as on the wire, so each is lost on its own."""
@@ -71,6 +76,7 @@ class OwnNetwork:
             skip("this machine makes no networks of namespaces: %s" % e)
 
     def _build(self, here, mtu):
+        own_x_sockets()
         sh("mount -t tmpfs none /run; ip netns add switch; ip link set lo up")
         sh("ip -n switch link add bridge mtu %d type bridge stp_state 0 forward_delay 0 mcast_snooping 0" % mtu)
         sh("ip -n switch link set bridge up; ip link add eth0 mtu %d type veth peer name port0 mtu %d netns switch" % (mtu, mtu))
