@@ -64,16 +64,18 @@ function Parameter({ session, equalizer, name }: { session: Session; equalizer: 
     return (
         <form class="row" onSubmit={async event => {
             event.preventDefault();
-            if (draft === null) return;
-            const done = await session.perform('equalizer-set', { name: equalizer.name, parameter: name, value: draft }, `${name} is ${draft}.`);
+            // The draft of the last render is outdated if Enter follows the last key at once.
+            const wanted = String(new FormData(event.currentTarget).get('value'));
+            const done = await session.perform('equalizer-set', { name: equalizer.name, parameter: name, value: wanted }, `${name} is ${wanted}.`);
             if (done) setDraft(null);
         }}>
             <label>
                 <span>{name.replaceAll('_', ' ')}</span>
-                <input value={draft ?? value} disabled={!mayChange} spellcheck={false} autocomplete="off"
+                <input name="value" value={draft ?? value} disabled={!mayChange} spellcheck={false} autocomplete="off"
                     onInput={event => setDraft(event.currentTarget.value)} />
             </label>
-            {mayChange && <button disabled={draft === null || draft === value}>Set</button>}
+            {/* Not disabled without a draft: Enter has no effect while the button of the form is disabled. */}
+            {mayChange && <button>Set</button>}
         </form>
     );
 }
