@@ -76,7 +76,7 @@ def main():
             wrong += not right
             print("%-5s grows by %.1f MiB: %s" % (role, grown, "right" if right else "WRONG"))
         leaky = growth(MemoryWatch(mural, {**environment, "MURAL_PLANT": "leak"}).run(one_node, program, LEAK_MARKS), "node", LEAK_MARKS)
-        right = leaky > native + MAX_GROWTH_MIB
+        right = leaky > growth(sound, "node") + MAX_GROWTH_MIB
         wrong += not right
         print("node that forgets textures grows by %.1f MiB: %s" % (leaky, "found" if right else "MISSED"))
         memory_watch.LOOK_SECONDS = often

@@ -47,8 +47,8 @@ test('hours of messages leave the memory of the page stable', async () => {
         await hours(kHours - 1);
         const late = await heap();
         console.log(`heap after 1 h: ${early.bytes} bytes, after ${kHours} h: ${late.bytes} bytes`);
-        // The collector leaves 10 to 17 MB. Two hours of kept states occupy more than 30 MB.
-        assert.ok(late.bytes < early.bytes * 1.3 + 12e6, `${early.bytes} → ${late.bytes} bytes`);
+        // The collector leaves 6 to 22 MB, whatever came before. Two hours of kept states occupy more than 30 MB.
+        assert.ok(late.bytes < early.bytes + 22e6, `${early.bytes} → ${late.bytes} bytes`);
         assert.ok(late.elements < early.elements * 1.3 + 50, `${early.elements} → ${late.elements} elements`);
         assert.deepEqual(faults, []);
         await close();
